@@ -49,6 +49,7 @@ TYPES = {"number": "_Number", "integer": "_Whole", "true or false": "bool", "tex
          "number or auto": 'Union[_Number, Literal["auto"]]'}
 # Of pybind11 from 2.10 to 3.1; lists are arguments alone, which may be any sequence.
 SPELLINGS = [(r"altiplan\._altiplan\.|collections\.abc\.", ""), (r"\b[Ll]ist\[", "Sequence["),
+             (r"\bTuple\[", "tuple["),
              (r"os\.PathLike( \| str \| bytes)?", "Union[str, PathLike[str]]"),
              (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
              (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
@@ -131,12 +132,13 @@ def plans_stub(plan, program, planners):
     """Text of the stub of `plan`, and the planners that this build has not."""
     source = re.search(r"def plan\((.*?)planner: str, (.*?)\*\*parameters", inspect.getsource(plan), re.S)
     before, after = (re.sub(r"\b_(?!Path)", "", " ".join(part.split())) for part in source.groups())
-    taken = set(inspect.signature(plan).parameters) - {"parameters"}
+    taken = {one.name for one in inspect.signature(plan).parameters.values()
+             if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)}
     text, missing, names = PLANS, [], []
 
     def call(planner, parameters, gives, doc, note=""):
         return f"    @overload{note}\n" + function(
-            "__call__", f"self, {before} planner: {planner}, {after} {parameters}) -> {gives}", doc, "    ")
+            "__call__", f"self, {before} name: {planner}, {after} {parameters}) -> {gives}", doc, "    ")
 
     for name in planners:
         found = described(program, name)

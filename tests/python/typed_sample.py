@@ -50,6 +50,7 @@ def verdicts() -> List[str]:
 def planners(name: str, parameters: Dict[str, Any]) -> List[altiplan.Step]:
     steps = [altiplan.plan("s.yaml", name, step_m=3), altiplan.plan("s.yaml", "my_planner", step_m=3),
              altiplan.plan("s.yaml", "jps", cell_m=numpy.ones(3), max_memory_mb=numpy.int64(9), costs="integer"),
+             altiplan.plan("s.yaml", "ompl", planner="RRTstar"),
              altiplan.plan("s.yaml", "hybrid_astar", radius_m="auto", plugin_path=["plugins"])]
     with_all: altiplan.Step = altiplan.plan("s.yaml", "astar", **parameters)
     return [*steps, with_all]

@@ -162,6 +162,17 @@ class Plans(PythonCase):
         with self.assertRaisesRegex(altiplan.Error, "did you mean 'astar'"):
             altiplan.plan(self.scenario, "astra")
 
+    def test_set_reaches_the_step(self):
+        keys = {"steps.0.with.cell_m": [50, 50, 50], "steps.0.id": "mine"}
+        self.assertEqual(altiplan.plan(self.scenario, "astar", set=keys).id, "mine")
+        with self.assertRaisesRegex(ValueError, "'steps' is the planner's alone"):
+            altiplan.plan(self.scenario, "astar", set={"steps": []})
+
+    def test_a_parameter_may_be_called_as_an_argument(self):
+        with self.assertRaises(altiplan.Error) as caught:
+            altiplan.plan(self.scenario, "astar", planner="PRM", cell_m=[50, 50, 50])
+        self.assertEqual(caught.exception.key, "steps.0.with.planner")
+
     def test_a_scenario_stands_for_its_pipeline(self):
         with self.assertRaises(altiplan.Error) as caught:
             altiplan.plan(self.scenario, "astar", cell=1)

@@ -12,7 +12,6 @@ range or of the wrong shape ValueError. That no route is found is a result, not 
 import os as _os
 import warnings as _warnings
 from typing import Any as _Any
-from typing import List as _List
 from typing import Mapping as _Mapping
 from typing import Optional as _Optional
 from typing import Sequence as _Sequence
@@ -40,7 +39,7 @@ for _type in (Check, Error, Flight, Leg, Metrics, Result, Route, Step, Study, Vi
 setattr(Result, "plot", _plot.plot)
 
 
-def _warn(sentences: _List[str]) -> None:
+def _warn(sentences: _Sequence[str]) -> None:
     for sentence in sentences:
         _warnings.warn(sentence, stacklevel=3)
 
@@ -72,7 +71,7 @@ def _end(values: "dict[str, _Any]", name: str, end: _Any) -> None:
 
 
 @_typed
-def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed: int = 0,
+def plan(file: _Path, planner: str, /, start: _Any = None, goal: _Any = None, seed: int = 0,
          within_s: _Optional[float] = None, *, set: _Mapping[str, _Any] = {},
          plugin_path: _Sequence[_Path] = (), **parameters: _Any) -> Step:
     """Plans one route with a planner in a scenario, or in that of a pipeline under its constraints.
@@ -87,7 +86,9 @@ def plan(file: _Path, planner: str, start: _Any = None, goal: _Any = None, seed:
     step: _Any = {"plan": planner, "with": parameters}
     if within_s is not None:
         step["within_s"] = _values.seconds(within_s, "within_s")
-    values = {**set, "steps": [step]}
+    if "steps" in set:
+        raise ValueError("set: 'steps' is the planner's alone; 'steps.0.within_mb' is a key of it")
+    values = {"steps": [step], **set}
     _end(values, "start", start)
     _end(values, "goal", goal)
     found, warnings = _altiplan.plan(

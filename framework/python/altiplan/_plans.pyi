@@ -20,7 +20,7 @@ class RefusedParameters(Protocol):
 class Plan(Protocol):
     """Type of altiplan.plan."""
     @overload
-    def __call__(self, file: _Path, planner: Literal["ant_colony"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["ant_colony"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], ants: _Whole = 100, iterations: _Whole = 100,
@@ -57,7 +57,7 @@ class Plan(Protocol):
             free neighbour, plus one cell (goal_scaled); 1 over its distance to the goal (goal);
             or 1 over the length of the leg (leg), as published"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["anya"], start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: Literal["anya"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), cell_m: _Numbers = [50, 50, 10],
                  corner: Literal["any", "one_free"] = "any", max_memory_mb: _Whole = 4096,
@@ -72,7 +72,7 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["astar"], start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: Literal["astar"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), cell_m: _Numbers = [50, 50, 10],
                  neighbours: _Whole = 26, corner: Literal["any", "free_box"] = "any",
@@ -132,7 +132,7 @@ class Plan(Protocol):
             where cells decide alone, in space: a straight run beside which nothing changes is
             one step, and its cells are not among those expanded; false: every cell is expanded"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["bidirectional_astar"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["bidirectional_astar"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], neighbours: _Whole = 26, corner: Literal["any",
@@ -184,7 +184,7 @@ class Plan(Protocol):
             memory limit: a search ends where it has used it; where memory for the whole lattice
             is taken beforehand, one that needs more is refused"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["dstar_lite"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["dstar_lite"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], neighbours: _Whole = 26, corner: Literal["any",
@@ -213,7 +213,7 @@ class Plan(Protocol):
             memory limit: a search ends where it has used it; where memory for the whole lattice
             is taken beforehand, one that needs more is refused"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["hybrid_astar"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["hybrid_astar"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  radius_m: Union[_Number, Literal["auto"]] = "auto", cell_m: Union[_Number,
@@ -236,7 +236,7 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 2048
             memory limit of the search"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["improved_ant_colony"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["improved_ant_colony"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], ants: _Whole = 100, iterations: _Whole = 100,
@@ -304,7 +304,7 @@ class Plan(Protocol):
             where pheromone is deposited: every reach_cells along the legs, on every cell of
             them, or on the nodes alone"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["informed_rrt_star"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["informed_rrt_star"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  range_m: Union[_Number, Literal["auto"]] = "auto", goal_bias: _Number = 0.05,
@@ -331,7 +331,7 @@ class Plan(Protocol):
         radius_m: number or auto [m], > 0, default "auto"
             radius of turns; auto: the least that vehicle and constraints allow"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["jps"], start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: Literal["jps"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), cell_m: _Numbers = [50, 50, 10],
                  corner: Literal["any", "free_box"] = "any", costs: Literal["exact",
@@ -350,7 +350,7 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["lazy_theta_star"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["lazy_theta_star"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], angle_rule: Literal["printed", "route_consistent",
@@ -368,13 +368,22 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["ompl"], start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: Literal["ompl"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
-                 plugin_path: Sequence[_Path] = (), range_m: Union[_Number,
+                 plugin_path: Sequence[_Path] = (), planner: Literal["ABITstar", "AITstar", "BFMT",
+                 "BITstar", "BKPIECE1", "BiEST", "BiTRRT", "EST", "FMT", "InformedRRTstar",
+                 "KPIECE1", "LBKPIECE1", "LazyPRM", "LazyRRT", "PDST", "PRM", "PRMstar", "ProjEST",
+                 "RRT", "RRTConnect", "RRTXstatic", "RRTsharp", "RRTstar", "SBL", "SORRTstar",
+                 "STRIDE", "TRRT"] = "RRTConnect", range_m: Union[_Number,
                  Literal["auto"]] = "auto", parameters: Any = {}, max_iterations: _Whole = 100000,
                  **others: NoReturn) -> Step:
         """a geometric planner of the Open Motion Planning Library, selected by name
 
+        planner: word, ABITstar, AITstar, BFMT, BITstar, BKPIECE1, BiEST, BiTRRT, EST, FMT,
+          InformedRRTstar, KPIECE1, LBKPIECE1, LazyPRM, LazyRRT, PDST, PRM, PRMstar, ProjEST,
+          RRT, RRTConnect, RRTXstatic, RRTsharp, RRTstar, SBL, SORRTstar, STRIDE, TRRT, default
+          "RRTConnect"
+            OMPL's name of the planner
         range_m: number or auto [m], > 0, default "auto"
             maximum extension of the planner's tree, its parameter range; auto: OMPL's default
         parameters: any, default {}
@@ -383,7 +392,7 @@ class Plan(Protocol):
             maximum number of queries by the planner; one that keeps improving its route stops
             there"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["rrt"], start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: Literal["rrt"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), step_m: Union[_Number,
                  Literal["auto"]] = "auto", weight_random: _Number = 1, weight_goal: _Number = 1,
@@ -420,7 +429,7 @@ class Plan(Protocol):
         radius_m: number or auto [m], > 0, default "auto"
             radius of turns; auto: the least that vehicle and constraints allow"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["rrt_connect"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["rrt_connect"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  range_m: Union[_Number, Literal["auto"]] = "auto", max_iterations: _Whole = 100000,
@@ -439,7 +448,7 @@ class Plan(Protocol):
         radius_m: number or auto [m], > 0, default "auto"
             radius of turns; auto: the least that vehicle and constraints allow"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["rrt_star"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["rrt_star"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  range_m: Union[_Number, Literal["auto"]] = "auto", goal_bias: _Number = 0.05,
@@ -468,7 +477,7 @@ class Plan(Protocol):
         bound: true or false, default true
             once there is a route, reject samples through which none can be shorter"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["spatial_slicing"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["spatial_slicing"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], axis: Literal["x", "y", "z", "auto"] = "x",
@@ -485,7 +494,7 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["stratified_theta"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["stratified_theta"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], angle_rule: Literal["printed", "route_consistent",
@@ -515,7 +524,7 @@ class Plan(Protocol):
             refine a route level by level in the nodes along it and their neighbours, or at once
             in the cells around a path over blocks of 8 cells, which needs no levels"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["theta_star"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["theta_star"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  cell_m: _Numbers = [50, 50, 10], angle_rule: Literal["printed", "route_consistent",
@@ -533,7 +542,7 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["apf"], start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: Literal["apf"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), variant: Literal["plain", "modified",
                  "improved"] = "improved", influence_m: _Number = 3000,
@@ -593,7 +602,7 @@ class Plan(Protocol):
             side on which to pass obstacles in front of the target: by the field's push alone,
             or the one predicted to reach the target sooner, kept until passed"""
     @overload
-    def __call__(self, file: _Path, planner: Literal["velocity_field"], start: Any = None,
+    def __call__(self, file: _Path, name: Literal["velocity_field"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
                  variant: Literal["paper", "robust"] = "paper", pull_weight: _Number = 1,
@@ -646,15 +655,15 @@ class Plan(Protocol):
         max_steps: integer, 1 … 1e+06, default 40000
             number of steps after which the pilot gives up"""
     @overload  # type: ignore[misc]
-    def __call__(self, file: _Path, planner: Literal["ant_colony", "anya", "astar",
+    def __call__(self, file: _Path, name: Literal["ant_colony", "anya", "astar",
                  "bidirectional_astar", "dstar_lite", "hybrid_astar", "improved_ant_colony",
                  "informed_rrt_star", "jps", "lazy_theta_star", "ompl", "rrt", "rrt_connect",
                  "rrt_star", "spatial_slicing", "stratified_theta", "theta_star", "apf",
-                 "velocity_field"], start: Any = None, goal: Any = None, seed: int = 0,
+                 "velocity_field"], /, start: Any = None, goal: Any = None, seed: int = 0,
                  within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), **parameters: Any) -> RefusedParameters: ...
     @overload
-    def __call__(self, file: _Path, planner: str, start: Any = None, goal: Any = None,
+    def __call__(self, file: _Path, name: str, /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), **parameters: Any) -> Step:
         """Plans one route with a planner in a scenario, or in that of a pipeline under its constraints.
