@@ -6,8 +6,9 @@ import os
 import signal
 import subprocess
 import time
+import unittest
 
-from case import HANGS_S, PROGRAM
+from case import HANGS_S, PROGRAM, SANITIZED
 from script_case import AROUND, STEP, ScriptCase, main
 
 FAILS = {  # what plan does: what the result says, and its reason
@@ -160,6 +161,7 @@ class Surroundings(ScriptCase):
         self.assertEqual(result["status"], "solved")
         self.assertEqual(self.workers(), [])
 
+    @unittest.skipIf(SANITIZED, "limits of memory")
     def test_memory(self):
         self.planner("kept = []\nwhile True: kept.append(bytearray(1 << 20))")
         pipeline = self.write("p.yaml", STEP.format(step="{plan: tested, within_mb: 40}"))

@@ -3,9 +3,10 @@
 import contextlib
 import json
 import sqlite3
+import unittest
 
 import case
-from case import SOURCES
+from case import SANITIZED, SOURCES
 from script_case import AROUND, STEP, ScriptCase, main
 
 import altiplan
@@ -174,6 +175,7 @@ class Plans(ScriptCase):
             f"    assert list(pool.map(ask, range(300))) == list(range(300))\nreturn {AROUND}"))
         self.assertEqual(result["status"], "solved", result["message"])
 
+    @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_plan_costs_little(self):
         pipeline = self.planner(f"return {AROUND}")
         times = [altiplan.run(pipeline, plugin_path=[self.folder]).steps[0].time_s for _ in range(9)]
@@ -189,6 +191,7 @@ class Plans(ScriptCase):
 
 
 class Commands(ScriptCase):
+    @unittest.skipIf(SANITIZED, "limits of memory")
     def test_a_study_beside_astar(self):
         self.planner(f"return {AROUND}")
         self.planner("while True: pass", name="hangs")
