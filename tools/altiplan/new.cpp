@@ -7,11 +7,11 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
-#include "host/base/words.hpp"
+#include "host/base/install_root.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/shapes.hpp"
 #include "host/base/unfinished.hpp"
-#include "host/base/install_root.hpp"
+#include "host/base/words.hpp"
 #include "host/plugins/registry.hpp"
 
 namespace altiplan::cli {
