@@ -170,7 +170,7 @@ class Failures(TuneCase):
     def test_hanging_and_hoarding(self):
         self.with_faults(hangs_from=0.95, hoards_from=0.85, fails_from=0.7)
         self.tune("--over", "steps.0.with.x=0.6..1", "--jobs", 3, "--wall-s",
-                  3 if SANITIZED else 0.5, "--memory-mb", 600 if SANITIZED else 200,
+                  3 if SANITIZED else 2, "--memory-mb", 600 if SANITIZED else 200,
                   size=("--tuner", "random_search", "--set-tuner", "evaluations=24"))
         self.assertEqual(self.outcomes(), {"", "timed_out", "out_of_memory", "no_route"})
 
