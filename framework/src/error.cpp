@@ -36,6 +36,8 @@ BudgetSpent::~BudgetSpent() = default;
 void attribute_to(const std::string& who) {
   try {
     throw;
+  } catch (const PluginError& error) {  // which says what it did
+    throw PluginError(who + error.what(), error.reason());
   } catch (const std::bad_alloc& error) {
     throw PluginError(who + "threw: " + error.what(), Reason::out_of_memory);
   } catch (const std::exception& error) {

@@ -15,7 +15,7 @@ PROGRAM, PLUGINS = sys.argv[1:3]
 SOURCES = pathlib.Path(sys.argv[3])
 PIPELINES = SOURCES / "configs/pipelines"
 SANITIZED = bool(os.environ.get("ALTIPLAN_SANITIZED"))  # limits of time and memory are not the same
-HANGS_S = 600 if SANITIZED else 60  # longer than anything takes that ends at all
+HANGS_S = 600 if SANITIZED else 120  # longer than anything takes that ends at all
 
 # A wall between start and goal that can be passed on either side, and a post that is seen in flight.
 SCENARIO = """altiplan: 1

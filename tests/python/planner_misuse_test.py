@@ -130,8 +130,14 @@ class Files(ScriptCase):
         self.assertNotIn("a.py", self.altiplan("plugins").stdout)
 
     def test_declarations(self):
-        for parameters, says in (("a: set = altiplan.parameter(None, doc='x')", "a parameter of type"),
+        for parameters, says in (("a: set = altiplan.parameter(None, doc='x')", "the parameter a: is of type"),
                                  ("a: int = altiplan.parameter(None, doc='x')", "None by default"),
+                                 ("a: int = altiplan.parameter(1.5, doc='x')", "a default of type integer"),
+                                 ("a: int = altiplan.parameter(2**70, doc='x')", "a default of 64 bits"),
+                                 ("a: float = altiplan.parameter(1.0, above=5, doc='x')", "its bounds"),
+                                 ("a: float = altiplan.parameter(float('inf'), doc='x')", "finite"),
+                                 ("a: str = altiplan.parameter('b', choices=['c'], doc='x')", "among c"),
+                                 ("a: int = altiplan.parameter(1, doc=5)", "expected texts, found 5"),
                                  ("aB: int = altiplan.parameter(1, doc='x')", "named 'aB'")):
             self.planner("return None", parameters=parameters)
             self.assertIn(says, self.altiplan("plugins").stdout)

@@ -166,8 +166,9 @@ int new_script(const Arguments& arguments) {
   std::string text = kit::read_file((templates / "python" / (arguments.kind + ".py")).string());
   replace_all(text, "@name@", arguments.name);
   host::write_file(file, text);
-  std::cout << file.string() << " is a " << arguments.kind << ": altiplan check-plugin "
-            << file.string() << " checks it, and --plugin-path . finds it\n";
+  std::cout << file.string() << " holds the " << arguments.kind << " '" << arguments.name
+            << "': altiplan check-plugin " << file.string()
+            << " checks it, and --plugin-path . finds it\n";
   return kDone;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "altiplan/world.hpp"
 #include "host/scripts/object.hpp"
 #include "host/scripts/values.hpp"
 
@@ -76,8 +77,10 @@ class ScriptLegConstraint final : public ScriptConstraint {
     if (leg.before) {
       add(numbers, *leg.before);
     }
+    static const World nothing;  // where no world is known
+    const ScriptAsked asked{leg.world != nullptr ? leg.world : &nothing};
     return object()
-        .answer({{{"admits", leg.world != nullptr}}, std::move(numbers)}, {leg.world}, kPatience)
+        .answer({{{"admits", true}}, std::move(numbers)}, asked, kPatience)
         .head.at("yes")
         .get<bool>();
   }

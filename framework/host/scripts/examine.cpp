@@ -124,7 +124,9 @@ Library examine_script(const fs::path& file) {
       library.plugins.push_back(manifest_of(offer, text, file));
     }
     if (library.plugins.empty()) {
-      throw PluginError("offers nothing: a class below @altiplan.planner(\"name\", …)");
+      throw PluginError(
+          "offers nothing: expected a line that begins with @altiplan.planner(\"name\", … or "
+          "likewise with smoother, environment or constraint, in UTF-8");
     }
   } catch (const PluginError& error) {
     library.refused = error.what();

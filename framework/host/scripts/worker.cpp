@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kDescriptor = 3;  ///< at which _worker.py talks
 constexpr auto kPatience = std::chrono::seconds(20);
-constexpr std::size_t kMaxHead = 1 << 24;
-constexpr std::size_t kMaxNumbers = 1 << 27;
+constexpr std::size_t kMaxHead = 1 << 28;
+constexpr std::size_t kMaxNumbers = 1 << 27;  ///< both as _worker.py has them
 
 fs::path interpreter() {
   if (const char* named = std::getenv("ALTIPLAN_PYTHON"); named != nullptr && *named != '\0') {

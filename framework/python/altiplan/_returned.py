@@ -15,24 +15,35 @@ _LIMITS = ("min_clearance_m", "min_ground_clearance_m", "min_leg_m", "max_leg_m"
            "max_turn_in_space", "min_turn_radius_m", "max_climb", "max_descent", "max_route_m")
 _BAND = ("above_ground", "min_m", "max_m")
 _LONGEST = 2000  # characters of a message
+_CONTROLS = dict.fromkeys([*range(32), *range(127, 160)], " ")  # which terminals would obey
+_HIGHEST_M = 100_000.0
+_MOST_VIOLATIONS = 10_000  # of a route; more tell nothing
+_ANGLES = {"max_turn": math.pi, "max_turn_in_space": math.pi, "max_climb": math.pi / 2,
+           "max_descent": math.pi / 2}
 
 
 def text(value: typing.Any) -> str:
-    """A message, in no more characters than anybody reads."""
-    return str(value)[:_LONGEST]
+    """A message in one line, in no more characters than anybody reads."""
+    return str(value)[:_LONGEST].translate(_CONTROLS)
 
 
 def number(value: typing.Any, name: str) -> float:
     """A finite number."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name}: expected a number, found {type(value).__name__}")
-    if not math.isfinite(value):
-        raise ValueError(f"{name}: expected a finite number, found {value}")
-    return float(value)
+    try:
+        found = float(value)
+    except OverflowError:  # of a whole number
+        found = math.inf
+    if not math.isfinite(found):
+        raise ValueError(f"{name}: expected a finite number, found {found}")
+    return found
 
 
 def numbers_or_one(value: typing.Any, count: int, name: str) -> typing.List[float]:
     """As many numbers, or one for all."""
+    if not isinstance(value, numbers.Real) and not hasattr(value, "__iter__"):
+        raise TypeError(f"{name}: expected {count} numbers, or one, found {type(value).__name__}")
     values = [value] * count if isinstance(value, numbers.Real) else list(value)
     if len(values) != count:
         raise ValueError(f"{name}: expected {count} numbers, found {len(values)}")
@@ -41,6 +52,13 @@ def numbers_or_one(value: typing.Any, count: int, name: str) -> typing.List[floa
 
 def _shape(values: typing.Any, dimensions: int, name: str) -> typing.List[int]:
     """The numbers of rows, columns, …, of which there is at least one."""
+    if hasattr(values, "tolist") and hasattr(values, "dtype"):  # numpy's arrays
+        if values.ndim != dimensions or values.size == 0:
+            raise ValueError(f"{name}: expected numbers in {dimensions} dimensions, found shape "
+                             f"{values.shape}")
+        if values.dtype.kind not in "biuf":
+            raise TypeError(f"{name}: expected numbers, found {values.dtype}")
+        return list(values.shape)
     shape = []
     for _ in range(dimensions):
         if not hasattr(values, "__len__") or len(values) == 0:
@@ -69,8 +87,8 @@ def _flat(values: typing.Any, shape: typing.Sequence[int], name: str) -> "array[
 def _ground(ground: typing.Any) -> _Answer:
     rows, columns = shape = _shape(ground.heights, 2, "heights")
     heights = _flat(ground.heights, shape, "heights")
-    if not all(map(math.isfinite, heights)):
-        raise ValueError("heights: expected a finite number at each post")
+    if not all(-_HIGHEST_M <= height <= _HIGHEST_M for height in heights):
+        raise ValueError(f"heights: expected a finite number at each post, up to {_HIGHEST_M:.0f} m")
     spacing = numbers_or_one(ground.spacing_m, 2, "spacing_m")
     if rows < 2 or columns < 2 or min(spacing) <= 0:
         raise ValueError("Ground: expected 2 rows and columns or more, and spacings above 0, found "
@@ -84,9 +102,11 @@ def _cells(cells: typing.Any) -> _Answer:
     edges = numbers_or_one(cells.cell_m, 3, "cell_m")
     if min(edges) <= 0:
         raise ValueError(f"cell_m: expected edges above 0, found {edges}")
+    blocked = _flat(cells.blocked, shape, "blocked")
+    if not all(one in (0.0, 1.0) for one in blocked):
+        raise ValueError("blocked: expected True or False, or 1 or 0, of each cell")
     return {"cells": {"counts": shape, "cell_m": edges,
-                      "origin_m": numbers_or_one(cells.origin_m, 3, "origin_m")}}, \
-        _flat(cells.blocked, shape, "blocked")
+                      "origin_m": numbers_or_one(cells.origin_m, 3, "origin_m")}}, blocked
 
 
 def _plain(value: typing.Any, name: str) -> typing.Any:
@@ -95,7 +115,7 @@ def _plain(value: typing.Any, name: str) -> typing.Any:
         value = value.tolist()
     if isinstance(value, (bool, str)):
         return value
-    if isinstance(value, numbers.Integral):
+    if isinstance(value, numbers.Integral) and abs(int(value)) < 2**63:
         return int(value)
     if isinstance(value, numbers.Real):
         return number(value, name)
@@ -130,6 +150,23 @@ def _band(band: typing.Any) -> _Json:
     return {"above_ground": bool(band.get("above_ground", False)), **ends}
 
 
+def _limit(value: typing.Any, name: str) -> float:
+    """A length, or an angle in radians: one in degrees would be a limit that limits nothing."""
+    limit = number(value, name)
+    if name in _ANGLES and not 0 <= limit <= _ANGLES[name] + 1e-9:
+        raise ValueError(f"{name}: expected radians from 0 to {_ANGLES[name]:.4f}, found {limit}")
+    if name not in _ANGLES and name != "min_ground_clearance_m" and limit < 0:
+        raise ValueError(f"{name}: expected metres from 0, found {limit}")
+    return limit
+
+
+def admitted(returned: typing.Any) -> bool:
+    """What `admits` returns; numpy's Booleans are no bool."""
+    if type(returned).__name__ not in ("bool", "bool_"):
+        raise TypeError(f"admits: expected True or False, found {type(returned).__name__}")
+    return bool(returned)
+
+
 def limits(returned: typing.Any) -> _Json:
     """What `tighten` returns; None of a limit, or of all, tightens nothing."""
     told: typing.Any = {} if returned is None else returned
@@ -139,15 +176,18 @@ def limits(returned: typing.Any) -> _Json:
         if name not in (*_LIMITS, "altitude"):
             raise ValueError(f"tighten: there is no limit {name!r}: expected altitude, "
                              + ", ".join(_LIMITS))
-    values: _Json = {name: number(value, name) for name, value in told.items()
+    values: _Json = {name: _limit(value, name) for name, value in told.items()
                      if name != "altitude" and value is not None}
     return {**values, "altitude": [_band(band) for band in told.get("altitude") or ()]}
 
 
 def violations(returned: typing.Any, count: int) -> typing.List[typing.Any]:
     """What `violations` returns of a route of as many points."""
+    if not isinstance(returned, (list, tuple)):
+        raise TypeError("violations: expected a list, empty where nothing is violated, found "
+                        + type(returned).__name__)
     found = []
-    for one in returned or ():
+    for one in returned[:_MOST_VIOLATIONS]:
         if not isinstance(one, (list, tuple)) or len(one) != 4:
             raise ValueError(f"violations: expected (at, value, limit, message), found {one!r}")
         at, value, limit, message = one

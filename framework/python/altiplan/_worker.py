@@ -22,6 +22,18 @@ _Json = typing.Dict[str, typing.Any]
 _Message = typing.Tuple[_Json, "array[float]"]
 _Answer = typing.Tuple[_Json, typing.Iterable[float]]
 _LENGTHS = struct.Struct("<II")  # bytes of the header, numbers after it
+_MOST_BYTES, _MOST_NUMBERS = 1 << 28, 1 << 27
+_LONGEST_TRACE = 10_000  # characters
+
+
+def packed(header: _Json, numbers: typing.Any = ()) -> bytes:
+    """A message; ValueError for one that the program would not take."""
+    text = json.dumps(header, ensure_ascii=False).encode("utf-8", "replace")
+    values: "array[float]" = numbers if isinstance(numbers, array) else array("d", numbers)
+    if len(text) > _MOST_BYTES or len(values) > _MOST_NUMBERS:
+        raise ValueError(f"an answer of {len(text)} bytes and {len(values)} numbers: expected at most "
+                         f"{_MOST_BYTES} and {_MOST_NUMBERS}")
+    return _LENGTHS.pack(len(text), len(values)) + text + values.tobytes()
 
 
 class Connection:
@@ -34,9 +46,10 @@ class Connection:
         self.stopped = False
 
     def send(self, header: _Json, numbers: typing.Any = ()) -> None:
-        text = json.dumps(header, ensure_ascii=False).encode("utf-8", "replace")
-        values: "array[float]" = numbers if isinstance(numbers, array) else array("d", numbers)
-        self._socket.sendall(_LENGTHS.pack(len(text), len(values)) + text + values.tobytes())
+        self.send_packed(packed(header, numbers))
+
+    def send_packed(self, message: bytes) -> None:
+        self._socket.sendall(message)
 
     def _taken(self) -> typing.Optional[_Message]:
         """The first whole message; None while it is incomplete."""
@@ -123,17 +136,20 @@ def place_of(error: BaseException, file: str) -> str:
     if isinstance(error, SyntaxError) and error.filename:
         return f"{os.path.basename(error.filename)}:{error.lineno}"
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if frame.filename == file] or frames[-1:]
-    return f"{os.path.basename(own[-1].filename)}:{own[-1].lineno}" if own else ""
+    own = [frame for frame in frames if frame.filename == file]
+    at = own or [frame for frame in frames if not frame.filename.startswith(os.path.dirname(__file__))]
+    return f"{os.path.basename(at[-1].filename)}:{at[-1].lineno}" if at else ""
 
 
-def failure(error: BaseException, file: str) -> _Json:
+def failure(error: BaseException, file: str, api: typing.Any) -> _Json:
     """An exception as a message."""
-    traceback.print_exception(type(error), error, error.__traceback__)  # to stderr, for its author
+    if place_of(error, file):  # else it is about what was returned, and no line of the file's
+        lines = "".join(traceback.format_exception(type(error), error, error.__traceback__))
+        print(lines[-_LONGEST_TRACE:], file=sys.stderr, end="", flush=True)  # for its author
     if isinstance(error, SystemExit):
         return {"failed": f"ended the process by sys.exit({error.code!r})", "how": "exit",
                 "place": place_of(error, file)}
-    text = traceback.format_exception_only(type(error), error)[-1].strip()[:2000]
+    text = api.returned.text(traceback.format_exception_only(type(error), error)[-1].strip())
     return {"failed": text, "how": "memory" if isinstance(error, MemoryError) else "threw",
             "place": place_of(error, file)}
 
@@ -156,7 +172,7 @@ def planned(call: typing.Callable[..., typing.Any], arguments: typing.List[typin
         answer["none"] = "" if returned is None else api.returned.text(returned)
         answer["proved"] = getattr(returned, "proved", False)
         return answer, ()
-    return answer, api.numbers_of(returned, 3, "the returned route")
+    return answer, api.given.numbers_of(returned, 3, "the returned route")
 
 
 class Worker:
@@ -167,7 +183,8 @@ class Worker:
         self._object: typing.Any = None
 
     def _load(self) -> None:
-        name = os.path.splitext(os.path.basename(self._file))[0]
+        # A name of its own, since numpy.py would stand for numpy.
+        name = "plugin_" + os.path.splitext(os.path.basename(self._file))[0]
         spec = importlib.util.spec_from_file_location(name, self._file)
         assert spec is not None and spec.loader is not None  # of a file that ends in .py
         module = importlib.util.module_from_spec(spec)
@@ -190,17 +207,16 @@ class Worker:
         """The answer of a method of the object: the message begins with its name."""
         method, ask, returned = getattr(self._object, task), self._connection.ask, self._api.returned
         if task == "admits":
-            leg = self._api.Leg(numbers, ask if message[task] else None)
-            return {"yes": bool(method(leg))}, ()
+            return {"yes": returned.admitted(method(self._api.given.Leg(numbers, ask)))}, ()
         if task == "build":
-            layer: _Answer = returned.built(method(self._api.Site(message[task], ask)))
+            layer: _Answer = returned.built(method(self._api.given.Site(message[task], ask)))
             return layer
-        request = self._api.Request(message[task], ask, self._connection.is_stopped)
+        request = self._api.given.Request(message[task], ask, self._connection.is_stopped)
         if task == "tighten":
             return {"limits": returned.limits(method(request))}, ()
         if task == "plan":
             return planned(method, [request], self._api)
-        points = self._api.listed(numbers, 3)
+        points = self._api.given.listed(numbers, 3)
         if task == "smooth":
             return planned(method, [points, request], self._api)
         return {"violations": returned.violations(method(points, request), len(points))}, ()
@@ -210,12 +226,12 @@ class Worker:
         while True:
             message, given = self._connection.receive()
             try:
-                header, numbers = self._answer(message, given)
+                answer = packed(*self._answer(message, given))
             except BaseException as error:
-                header, numbers = failure(error, self._file), array("d")
+                answer = packed(failure(error, self._file, self._api))
             if os.getpid() != own:
                 os._exit(0)  # a copy that the planner has forked has nothing to say
-            self._connection.send(header, numbers)
+            self._connection.send_packed(answer)
 
 
 def light_package() -> typing.Any:
@@ -223,11 +239,12 @@ def light_package() -> typing.Any:
     package = types.ModuleType("altiplan")
     package.__path__ = [os.path.dirname(os.path.abspath(__file__))]
     sys.modules["altiplan"] = package
-    from altiplan import _planner, _returned
+    from altiplan import _planner, _request, _returned
 
     for name in ("Cells", "Ground", "NoRoute", "constraint", "environment", "parameter", "parameters",
                  "planner", "smoother"):
         setattr(package, name, getattr(_planner, name))
+    setattr(_planner, "given", _request)
     setattr(_planner, "returned", _returned)
     return _planner
 
@@ -238,7 +255,8 @@ def main() -> None:
     faulthandler.enable()
     connection = Connection(3)
     connection.send({"process": os.getpid()})
-    sys.path[0] = os.path.dirname(file)
+    sys.path[0:1] = []
+    sys.path.append(os.path.dirname(file))  # at the end: a file numpy.py is not numpy
     sys.argv = [file]
     Worker(file, light_package(), connection).serve()
 
