@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """constraint_test.py PROGRAM PLUGINS SOURCES: constraints written in Python hold for plans and judgements."""
+import unittest
+
 import altiplan
+from case import SANITIZED
 from script_case import ScriptCase, main
 
 HEAD = """import altiplan
@@ -149,6 +152,7 @@ steps:
         pipeline = self.constraint("applies_to = 'track'\ndef admits(self, leg): return False")
         self.assertEqual(self.result(pipeline)[0]["status"], "solved")
 
+    @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_constraint(self):
         self.altiplan("new", "constraint", "border", "--python")
         self.assertIn("0 failed", self.altiplan("check-plugin", "border.py", "--jobs", 2).stdout)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """environment_test.py PROGRAM PLUGINS SOURCES: layers written in Python are those of scenarios and files."""
+import unittest
+
 import numpy
+from case import SANITIZED
 from script_case import ScriptCase, main
 
 import altiplan
@@ -154,10 +157,12 @@ class Layers(ScriptCase):
         self.altiplan("view", "r.json", "--out", "page.html")
         self.assertIn("tested", (self.folder / "page.html").read_text())
 
+    @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_environment(self):
         self.altiplan("new", "environment", "poles", "--python")
         self.assertIn("0 failed", self.altiplan("check-plugin", "poles.py", "--jobs", 2).stdout)
 
+    @unittest.skipIf(SANITIZED, "limits of time")
     def test_ground_and_cells_keep_the_contract(self):
         for body in (GROUND, "return altiplan.Cells([[[0, 1], [1, 0]]], 100)", IN_PYTHON):
             self.layer(body)

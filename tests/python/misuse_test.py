@@ -8,7 +8,7 @@ import threading
 
 import case
 import numpy
-from case import PIPELINES, PLUGINS, SOURCES, PythonCase
+from case import PIPELINES, PLUGINS, SOURCES, UNHURRIED, PythonCase
 
 import altiplan
 
@@ -196,13 +196,13 @@ class Objects(PythonCase):
         for violation in altiplan.check([[0, 0, 0], [900, 500, 100]], self.scenario).violations:
             self.all_of(violation, seen)
         for name in ("ridge_crossing", "wing_ridge"):
-            self.all_of(altiplan.run(PIPELINES / f"{name}.yaml"), seen)
+            self.all_of(altiplan.run(PIPELINES / f"{name}.yaml", set=UNHURRIED), seen)
         self.assertGreater(len(seen), 300)
         kinds = {type(value).__name__ for value in seen.values()}
         self.assertLessEqual(set(CLASSES), kinds)
 
     def test_parts_outlive_the_whole(self):
-        result = altiplan.run(PIPELINES / "ridge_crossing.yaml")
+        result = altiplan.run(PIPELINES / "ridge_crossing.yaml", set=UNHURRIED)
         parts = [result.steps, result.flight.track, result.route.points, result.metrics]
         text = repr(parts)
         del result

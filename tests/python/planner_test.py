@@ -268,6 +268,7 @@ class Commands(ScriptCase):
         result, _ = self.result(pipeline, code=1)
         self.assertEqual(result["steps"][0]["message"], "something is in the way")
 
+    @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_planner(self):
         self.altiplan("new", "planner", "bends", "--python")
         text = (self.folder / "bends.py").read_text()

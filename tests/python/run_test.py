@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import case
 import numpy
-from case import HANGS_S, PIPELINES, PLUGINS, PROGRAM, PythonCase, untimed
+from case import HANGS_S, PIPELINES, PLUGINS, PROGRAM, UNHURRIED, PythonCase, untimed
 
 import altiplan
 
@@ -18,14 +18,15 @@ import altiplan
 class Run(PythonCase):
     def program(self, *arguments):
         out = self.folder / "program.json"
-        subprocess.run([PROGRAM, "run", *map(str, arguments), "--out", str(out)], check=True,
+        values = [word for key, value in UNHURRIED.items() for word in ("--set", f"{key}={value}")]
+        subprocess.run([PROGRAM, "run", *map(str, arguments), *values, "--out", str(out)], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=HANGS_S)
         return out.read_text()
 
     def test_the_file_is_that_of_the_program(self):
         pipeline = PIPELINES / "ridge_crossing.yaml"
         expected = self.program(pipeline, "--seed", "7", "--set", "steps.0.with.weight_g=0.6")
-        result = altiplan.run(pipeline, seed=7, set={"steps.0.with.weight_g": 0.6},
+        result = altiplan.run(pipeline, seed=7, set={"steps.0.with.weight_g": 0.6, **UNHURRIED},
                               out=self.folder / "python.json")
         written = (self.folder / "python.json").read_text()
         self.assertEqual(untimed(written), untimed(expected))
@@ -37,7 +38,7 @@ class Run(PythonCase):
     def test_turns(self):
         pipeline = PIPELINES / "wing_ridge.yaml"
         expected = json.loads(self.program(pipeline))
-        result = altiplan.run(pipeline)
+        result = altiplan.run(pipeline, set=UNHURRIED)
         self.assertEqual(result.route.chords().tolist(), expected["route"])
         self.assertEqual([leg.to_dict() for leg in result.route.legs], expected["legs"])
         self.assertEqual(result.route_lonlat.tolist(), expected["route_lonlat"])
@@ -46,7 +47,7 @@ class Run(PythonCase):
         self.assertAlmostEqual(result.route.length_m, expected["metrics"]["length_m"])
 
     def test_attributes_are_the_keys(self):
-        result = altiplan.run(PIPELINES / "ridge_crossing.yaml")
+        result = altiplan.run(PIPELINES / "ridge_crossing.yaml", set=UNHURRIED)
         arrays = {"route", "route_lonlat", "legs", "track", "trace", "altiplan"}
         pairs = [(result, result.to_dict()), (result.flight, result.to_dict()["flight"]),
                  (result.metrics, result.to_dict()["metrics"])]

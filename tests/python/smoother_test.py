@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """smoother_test.py PROGRAM PLUGINS SOURCES: smoothers written in Python do what those of libraries do."""
+import unittest
+
+from case import SANITIZED
 from script_case import ScriptCase, main
 
 SMOOTHER = """import altiplan
@@ -59,6 +62,7 @@ class Smoothers(ScriptCase):
                 self.assertEqual(step["status"], "failed")
                 self.assertIn(says, step["message"])
 
+    @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_smoother(self):
         self.altiplan("new", "smoother", "drops", "--python")
         self.assertIn("0 failed", self.altiplan("check-plugin", "drops.py", "--jobs", 2).stdout)

@@ -8,7 +8,7 @@ import subprocess
 
 import case
 import numpy
-from case import PIPELINES, PLUGINS, PROGRAM, SOURCES, PythonCase
+from case import PIPELINES, PLUGINS, PROGRAM, SOURCES, UNHURRIED, PythonCase
 
 import altiplan
 
@@ -63,7 +63,7 @@ class Routes(PythonCase):
             hash(route)  # equal by value, as a list
 
     def test_pickle(self):
-        turning = altiplan.run(PIPELINES / "wing_ridge.yaml").route
+        turning = altiplan.run(PIPELINES / "wing_ridge.yaml", set=UNHURRIED).route
         self.assertIn("turns", repr(turning))
         for route in (turning, altiplan.Route(ROUND), altiplan.Route([])):
             again = pickle.loads(pickle.dumps(route))
@@ -229,7 +229,7 @@ class Pictures(PythonCase):
         except ImportError:
             self.skipTest("no matplotlib")
         matplotlib.use("Agg")
-        top, profile = altiplan.run(PIPELINES / "ridge_crossing.yaml").plot().axes
+        top, profile = altiplan.run(PIPELINES / "ridge_crossing.yaml", set=UNHURRIED).plot().axes
         self.assertEqual([line.get_label() for line in top.lines],
                          ["route", "prune", "accepted route", "flight"])
         self.assertEqual(len(profile.lines), 2)
