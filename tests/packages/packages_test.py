@@ -17,7 +17,34 @@ import walk  # noqa: E402
 
 BUILD = pathlib.Path(sys.argv[1]).resolve()
 MOST_SECONDS = 600  # from an installed package to the report of a study
-PIPELINES = "/usr/share/altiplan/configs/pipelines"
+CONFIGS = "/usr/share/altiplan/configs"
+PIPELINES = f"{CONFIGS}/pipelines"
+PICTURE = f"""import altiplan
+result = altiplan.go("{CONFIGS}/data/jacksboro_fault.tif", start=(-84.38, 36.48), goal=(-84.12, 36.70),
+                     out="first", max_agl=120)
+result.plot().savefig("first.png")
+"""
+# All that a planner needs.
+PLANNER = """import altiplan
+@altiplan.planner("bends", "Straight to the goal, or around what is in the way with one bend")
+class Bends:
+    def plan(self, request):
+        (x, y, z), (to_x, to_y, to_z) = request.start, request.goal
+        for tried in range(101):
+            if request.budget.spent(tried):
+                return None
+            out = 0.1 * ((tried + 1) // 2) * (-1) ** tried
+            bend = ((x + to_x) / 2 - out * (to_y - y), (y + to_y) / 2 + out * (to_x - x),
+                    (z + to_z) / 2)
+            route = [request.start, bend, request.goal]
+            if not request.world.violations(route):
+                return route
+"""
+STUDY = f"""altiplan: 1
+name: bends
+scenarios: [{{file: {CONFIGS}/scenarios/fusion_random.yaml}}]
+pipelines: [{{id: bends, file: bends.yaml}}, {{id: astar, file: {PIPELINES}/hills_astar.yaml}}]
+"""
 
 
 def clean_system():
@@ -34,6 +61,7 @@ class System:
     """Runs commands in the root folder, in sessions with processes of their own."""
 
     def __init__(self, root):
+        self.home = root / "home/author"
         # `altiplan` finds what it is installed with by /proc.
         enter = ["unshare", "--mount", "--pid", "--fork", "--kill-child", f"--root={root}",
                  "--wd=/", "--mount-proc"]
@@ -85,6 +113,20 @@ def python_package(system):
             f"print(altiplan.__file__, altiplan.run(\"{PIPELINES}/hills_astar.yaml\").status)'", shell)
         assert output == "/usr/lib/python3/dist-packages/altiplan/__init__.py solved\n", output
     system.as_author("/usr/bin/python3 -c 'import pandas, matplotlib'")  # recommended
+    files = system.home / "python"
+    files.mkdir()
+    for name, text in {"picture.py": PICTURE, "bends.py": PLANNER, "study.yaml": STUDY,
+                       "bends.yaml": "altiplan: 1\nsteps: [{plan: bends}]\n"}.items():
+        (files / name).write_text(text)
+    system.do("chown -R author /home/author/python")
+    system.as_author("cd python && /usr/bin/python3 picture.py && test -s first.png")
+    output, _ = system.as_author("altiplan check-plugin bends.py")
+    assert " 0 failed" in output, output
+    system.as_author("altiplan study study.yaml --out study.db --plugin-path .")
+    output, _ = system.as_author(
+        "/usr/bin/python3 -c 'import altiplan; print(list(altiplan.Study(\"study.db\").runs().outcome))'; "
+        "cd ..")
+    assert output == "['solved', 'solved']\n", output
 
 
 def plugin_of_ones_own(system):
