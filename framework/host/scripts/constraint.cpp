@@ -77,8 +77,8 @@ class ScriptLegConstraint final : public ScriptConstraint {
     if (leg.before) {
       add(numbers, *leg.before);
     }
-    static const World nothing;  // where no world is known
-    const ScriptAsked asked{leg.world != nullptr ? leg.world : &nothing};
+    static const World kNothing;  // where no world is known
+    const ScriptAsked asked{leg.world != nullptr ? leg.world : &kNothing};
     return object()
         .answer({{{"admits", true}}, std::move(numbers)}, asked, kPatience)
         .head.at("yes")
