@@ -7,7 +7,7 @@ import numbers
 import typing
 from array import array
 
-from . import _planner
+from . import _planner, _values
 
 _Json = typing.Dict[str, typing.Any]
 _Answer = typing.Tuple[_Json, typing.Iterable[float]]
@@ -109,23 +109,6 @@ def _cells(cells: typing.Any) -> _Answer:
                       "origin_m": numbers_or_one(cells.origin_m, 3, "origin_m")}}, blocked
 
 
-def _plain(value: typing.Any, name: str) -> typing.Any:
-    """A value as a file would have it."""
-    if hasattr(value, "tolist"):  # numpy's arrays and numbers
-        value = value.tolist()
-    if isinstance(value, (bool, str)):
-        return value
-    if isinstance(value, numbers.Integral) and abs(int(value)) < 2**63:
-        return int(value)
-    if isinstance(value, numbers.Real):
-        return number(value, name)
-    if isinstance(value, dict):
-        return {str(key): _plain(each, f"{name}.{key}") for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(each, name) for each in value]
-    raise TypeError(f"{name}: expected numbers, texts, lists and dicts, found {type(value).__name__}")
-
-
 def built(layer: typing.Any) -> _Answer:
     """What `build` returns."""
     if isinstance(layer, _planner.Ground):
@@ -139,7 +122,7 @@ def built(layer: typing.Any) -> _Answer:
         if not isinstance(solid, dict) or len(solid) != 1:
             raise TypeError(f'solid {at}: expected a dict such as {{"box": {{"min_m": …, "max_m": …}}}},'
                             + text(f" found {solid!r}"))
-    return {"solids": [_plain(solid, f"solid {at}") for at, solid in enumerate(layer)]}, ()
+    return {"solids": [_values.plain_value(solid, f"solid {at}") for at, solid in enumerate(layer)]}, ()
 
 
 def _band(band: typing.Any) -> _Json:

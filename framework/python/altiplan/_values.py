@@ -13,14 +13,16 @@ _PLAIN = re.compile(r"[a-z][a-z0-9_]*")
 _NOT_TEXT = {"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"}
 
 
-def _plain(value: Any, key: str) -> Any:
+def plain_value(value: Any, key: str) -> Any:
     """The value in types of JSON."""
+    if isinstance(value, int) and abs(value) >= 2**63:  # JSON of any size is no number to C++
+        raise ValueError(f"{key}: expected a finite number of 64 bits")
     if isinstance(value, (str, int)):
         return value
     if isinstance(value, (list, tuple)):
-        return [_plain(each, key) for each in value]
+        return [plain_value(each, key) for each in value]
     if hasattr(value, "tolist"):  # numpy's arrays and numbers
-        return _plain(value.tolist(), key)
+        return plain_value(value.tolist(), key)
     if isinstance(value, numbers.Integral):
         return int(value)
     if isinstance(value, numbers.Real):
@@ -28,7 +30,7 @@ def _plain(value: Any, key: str) -> Any:
             raise ValueError(f"{key}: expected a finite number, found {value}")
         return float(value)
     if isinstance(value, Mapping):
-        return {str(name): _plain(each, key) for name, each in value.items()}
+        return {str(name): plain_value(each, f"{key}.{name}") for name, each in value.items()}
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     raise TypeError(f"{key}: expected a number, a text, a list or a dict, "
@@ -51,19 +53,19 @@ def assignments(values: "Mapping[str, Any]") -> List[str]:
             raise TypeError(f"set: expected keys of type str, found {type(key).__name__}")
         if not key or "=" in key or key.startswith("~"):
             raise ValueError(f"set: {key!r} is no key, such as 'steps.0.with.weight_g'")
-        texts.append(f"~{key}" if value is None else f"{key}={_text(_plain(value, key))}")
+        texts.append(f"~{key}" if value is None else f"{key}={_text(plain_value(value, key))}")
     return texts
 
 
 def point(value: Any, name: str) -> List[float]:
     """Three finite numbers."""
-    numbers_of = _plain(value, name) if hasattr(value, "tolist") else value
+    numbers_of = plain_value(value, name) if hasattr(value, "tolist") else value
     if not isinstance(numbers_of, (list, tuple)) or len(numbers_of) != 3:
         raise ValueError(f"{name}: expected [x, y, z] in metres, found {value!r}")
     for number in numbers_of:
         if isinstance(number, bool) or not isinstance(number, numbers.Real):
             raise TypeError(f"{name}: expected numbers, found {type(number).__name__}")
-    plain: List[float] = _plain(numbers_of, name)
+    plain: List[float] = plain_value(numbers_of, name)
     return plain
 
 

@@ -143,15 +143,16 @@ def place_of(error: BaseException, file: str) -> str:
 
 def failure(error: BaseException, file: str, api: typing.Any) -> _Json:
     """An exception as a message."""
-    if place_of(error, file):  # else it is about what was returned, and no line of the file's
+    place = place_of(error, file)
+    if place:  # else it is about what was returned, and no line of the file's
         lines = "".join(traceback.format_exception(type(error), error, error.__traceback__))
         print(lines[-_LONGEST_TRACE:], file=sys.stderr, end="", flush=True)  # for its author
     if isinstance(error, SystemExit):
         return {"failed": f"ended the process by sys.exit({error.code!r})", "how": "exit",
-                "place": place_of(error, file)}
+                "place": place}
     text = api.returned.text(traceback.format_exception_only(type(error), error)[-1].strip())
     return {"failed": text, "how": "memory" if isinstance(error, MemoryError) else "threw",
-            "place": place_of(error, file)}
+            "place": place}
 
 
 def planned(call: typing.Callable[..., typing.Any], arguments: typing.List[typing.Any],
