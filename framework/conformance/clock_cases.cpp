@@ -18,7 +18,7 @@ constexpr const char* kDeadline =
 constexpr const char* kStop =
     "Planner contract 4: a stop is honoured within 50 ms at the 99th percentile";
 constexpr const char* kSmootherDeadline = "Smoother: a deadline is overrun by at most 50 ms";
-constexpr double kMax = 50;
+constexpr double kMaxLateMs = 50;
 
 Clock::time_point after(double ms) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(Milliseconds(ms));
@@ -51,7 +51,7 @@ class FairClock {
 template <class Measure>
 double min_of_three(const Measure& measure) {
   double least = measure();
-  for (int again = 0; again < 2 && least > kMax; ++again) {
+  for (int again = 0; again < 2 && least > kMaxLateMs; ++again) {
     least = std::min(least, measure());
   }
   return least;
@@ -80,7 +80,7 @@ void deadlines(const PlannerBench& bench, Report& report) {
         said = text(result);
         return took - allowed;
       });
-      report.expect(overrun <= kMax, kDeadline, [&] {
+      report.expect(overrun <= kMaxLateMs, kDeadline, [&] {
         return scene.name + ": of " + text(allowed) + " ms the planner took " +
                text(allowed + overrun) + " ms; it returned " + said;
       });
@@ -108,7 +108,7 @@ void stops(const PlannerBench& bench, Report& report) {
       stopper.join();
       return took - Milliseconds(asked.load() - from).count();
     });
-    report.expect(late <= kMax, kStop, [&] {
+    report.expect(late <= kMaxLateMs, kStop, [&] {
       return scene.name + ": stopped after " + std::to_string(delay) + " ms the planner took " +
              text(late) + " ms more";
     });
@@ -136,7 +136,7 @@ void smoother_deadlines(const Factory<Smoother>& make, const Options& options, R
       (void)smoother->smooth(route, scene.request);
       return clock.ms() - allowed;
     });
-    report.expect(overrun <= kMax, kSmootherDeadline, [&] {
+    report.expect(overrun <= kMaxLateMs, kSmootherDeadline, [&] {
       return "a route of 1,001 points: of " + text(allowed) + " ms the smoother took " +
              text(allowed + overrun) + " ms";
     });

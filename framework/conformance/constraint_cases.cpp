@@ -7,7 +7,7 @@
 namespace altiplan::conformance {
 namespace {
 
-constexpr const char* kPure =
+constexpr const char* kConstraintPure =
     "Constraint contract 1: pure and const, callable from any number of threads";
 constexpr const char* kTightens = "Constraint contract 2: tighten only ever makes a limit stricter";
 constexpr const char* kLegAlone =
@@ -18,7 +18,7 @@ constexpr const char* kViolations =
     "Constraint contract 5: violations is empty if and only if the route satisfies the constraint";
 constexpr const char* kNothing = "Suite: there must be something to judge";
 
-struct Bench {
+struct ConstraintBench {
   Factory<Constraint> make;
   Factory<Constraint> tighter;
   Options options;
@@ -141,12 +141,10 @@ Polyline random_route(RandomStream& random, const Scene& scene) {
   return route;
 }
 
-std::string text(const Motion& leg) {
-  return "the leg " + conformance::text(leg.from) + " to " + conformance::text(leg.to) +
-         (leg.before ? " after " + conformance::text(*leg.before) : "");
+std::string motion_text(const Motion& leg) {
+  return "the leg " + text(leg.from) + " to " + text(leg.to) +
+         (leg.before ? " after " + text(*leg.before) : "");
 }
-
-using conformance::text;
 
 bool equal_violations(const std::vector<Violation>& a, const std::vector<Violation>& b) {
   return std::equal(
@@ -156,14 +154,15 @@ bool equal_violations(const std::vector<Violation>& a, const std::vector<Violati
 }
 
 /// All answers of a constraint to a fixed set of queries.
-struct Answers {
+struct ConstraintAnswers {
   std::vector<Figures> limits;
   std::vector<bool> admitted;
   std::vector<std::vector<Violation>> violations;
 };
 
-Answers ask(const Constraint& constraint, const Bench& bench, bool backward = false) {
-  Answers answers;
+ConstraintAnswers ask(const Constraint& constraint, const ConstraintBench& bench,
+                      bool backward = false) {
+  ConstraintAnswers answers;
   for (int n = 0; n < bench.options.rounds; ++n) {
     const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n));
     RandomStream random = RandomStream(bench.options.seed).sub("ask", std::uint64_t(n));
@@ -187,14 +186,14 @@ Answers ask(const Constraint& constraint, const Bench& bench, bool backward = fa
   return answers;
 }
 
-void pure(const Bench& bench, Report& report) {
+void pure(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
-  const Answers first = ask(*constraint, bench);
-  const auto same = [&](const Answers& again, const char* which) {
+  const ConstraintAnswers first = ask(*constraint, bench);
+  const auto same = [&](const ConstraintAnswers& again, const char* which) {
     report.expect(
         first.limits == again.limits && std::equal(first.violations.begin(), first.violations.end(),
                                                    again.violations.begin(), equal_violations),
-        kPure, [&] {
+        kConstraintPure, [&] {
           return std::string("the constraint's answers differ ") + which + ", seed " +
                  std::to_string(bench.options.seed);
         });
@@ -206,14 +205,14 @@ void pure(const Bench& bench, Report& report) {
   same(ask(*constraint, bench), "at the second call");
   same(ask(*constraint, bench, true), "with the legs in reverse order");
   same(ask(*bench.make(), bench), "between two objects");
-  Answers one;
-  Answers other;
+  ConstraintAnswers one;
+  ConstraintAnswers other;
   in_two_threads([&] { one = ask(*constraint, bench); }, [&] { other = ask(*constraint, bench); });
   same(one, "with a second thread running");
   same(other, "with a second thread running");
 }
 
-void tightens(const Bench& bench, Report& report) {
+void tightens(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
   for (int n = 0; n < 50 * bench.options.rounds; ++n) {
     const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
@@ -240,7 +239,7 @@ void tightens(const Bench& bench, Report& report) {
   }
 }
 
-void legs_and_routes(const Bench& bench, Report& report) {
+void legs_and_routes(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
   const auto stricter = bench.tighter ? bench.tighter() : nullptr;
   bool says_anything = false;
@@ -253,7 +252,7 @@ void legs_and_routes(const Bench& bench, Report& report) {
       says_anything |= !admitted;
       if (stricter != nullptr) {
         report.expect(admitted || !stricter->admits(leg), kLegAlone, [&] {
-          return text(leg) + " is refused, and admitted with the stricter parameter";
+          return motion_text(leg) + " is refused, and admitted with the stricter parameter";
         });
       }
     }
@@ -303,7 +302,7 @@ bool depends_on_place(const Constraint& constraint, const Motion& leg, RandomStr
 }
 
 /// Legs through refused ones: a constraint that looks at a leg's ends alone admits them.
-void legs_through_refused_ones(const Bench& bench, Report& report) {
+void legs_through_refused_ones(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
   const Scene scene = scene_of(bench.options.seed * 100);
   for (int n = 0; n < 400 * bench.options.rounds; ++n) {
@@ -316,16 +315,18 @@ void legs_through_refused_ones(const Bench& bench, Report& report) {
     for (const double longer : {1.0, 10.0, 100.0}) {
       const Vec3 by = longer * (part.to - part.from);
       const Motion whole{std::nullopt, part.from - by, part.to + by, part.world};
-      report.expect(
-          !constraint->admits(whole) || !depends_on_place(*constraint, part, random), kThrough,
-          [&] { return text(whole) + " is admitted, and its part, " + text(part) + ", refused"; });
+      report.expect(!constraint->admits(whole) || !depends_on_place(*constraint, part, random),
+                    kThrough, [&] {
+                      return motion_text(whole) + " is admitted, and its part, " +
+                             motion_text(part) + ", refused";
+                    });
     }
   }
 }
 
 /// The judge's result with the constraint agrees with the constraint's own: a route within the
 /// limits, whose legs are admitted, is violated exactly where violations reports it.
-void agrees_with_the_judge(const Bench& bench, Report& report) {
+void agrees_with_the_judge(const ConstraintBench& bench, Report& report) {
   const std::shared_ptr<const Constraint> constraint = bench.make();
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
     Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
@@ -356,7 +357,7 @@ void agrees_with_the_judge(const Bench& bench, Report& report) {
   }
 }
 
-void odd_questions(const Bench& bench, Report&) {
+void odd_questions(const ConstraintBench& bench, Report&) {
   const auto constraint = bench.make();
   const Scene scene = scene_of(bench.options.seed);
   const Vec3 p = scene.request.start.position;
@@ -380,9 +381,9 @@ void odd_questions(const Bench& bench, Report&) {
 
 Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint>& tighter,
                        const Options& options) {
-  const Bench bench{make, tighter, options};
-  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
-    return make_case(name, kPure, [bench, body](Report& report) { body(bench, report); });
+  const ConstraintBench bench{make, tighter, options};
+  const auto made = [&](const char* name, void (*body)(const ConstraintBench&, Report&)) {
+    return make_case(name, kConstraintPure, [bench, body](Report& report) { body(bench, report); });
   };
   return {made("answers_do_not_depend_on_history_or_threads", pure),
           made("tighten_never_loosens", tightens),

@@ -7,11 +7,9 @@
 namespace altiplan::conformance {
 namespace {
 
-using Bench = EnvironmentBench;
-
 /// Boxes flown along legs in one attitude: met if a point of the layer lies in them, by clearance,
 /// and free if the sphere around them is free all along the leg.
-void bodies(const Bench& bench, Report& report) {
+void bodies(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "bodies");
   const Environment& layer = probe.layer();
   RandomStream& random = probe.random();

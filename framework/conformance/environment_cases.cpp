@@ -8,25 +8,23 @@
 namespace altiplan::conformance {
 namespace {
 
-using Bench = EnvironmentBench;
-
 /// Answers to a fixed list of queries.
-struct Answers {
+struct LayerAnswers {
   std::vector<double> numbers;
   std::vector<bool> yes;
 
-  friend bool operator==(const Answers&, const Answers&) = default;
+  friend bool operator==(const LayerAnswers&, const LayerAnswers&) = default;
 };
 
-std::vector<Probe::AskedLeg> questions(const Bench& bench) {
+std::vector<Probe::AskedLeg> questions(const EnvironmentBench& bench) {
   Probe probe(bench, "questions");
   std::vector<Probe::AskedLeg> all(std::size_t(100 * bench.options.rounds));
   std::generate(all.begin(), all.end(), [&] { return probe.leg(); });
   return all;
 }
 
-Answers ask(const Environment& layer, const std::vector<Probe::AskedLeg>& legs) {
-  Answers answers;
+LayerAnswers ask(const Environment& layer, const std::vector<Probe::AskedLeg>& legs) {
+  LayerAnswers answers;
   for (const auto& [a, b, r] : legs) {
     answers.numbers.push_back(layer.clearance(a));
     if (const Ground* ground = layer.ground()) {
@@ -42,11 +40,11 @@ Answers ask(const Environment& layer, const std::vector<Probe::AskedLeg>& legs) 
   return answers;
 }
 
-void pure(const Bench& bench, Report& report) {
+void pure(const EnvironmentBench& bench, Report& report) {
   const auto legs = questions(bench);
   const auto layer = bench.make(bench.site());
-  const Answers first = ask(*layer, legs);
-  const auto same = [&](const Answers& again, const std::string& which) {
+  const LayerAnswers first = ask(*layer, legs);
+  const auto same = [&](const LayerAnswers& again, const std::string& which) {
     const auto at =
         std::mismatch(first.numbers.begin(), first.numbers.end(), again.numbers.begin()).first -
         first.numbers.begin();
@@ -57,14 +55,14 @@ void pure(const Bench& bench, Report& report) {
   };
   same(ask(*layer, legs), "when asked again");
   same(ask(*bench.make(bench.site()), legs), "between two objects of one Site");
-  Answers one;
-  Answers other;
+  LayerAnswers one;
+  LayerAnswers other;
   in_two_threads([&] { one = ask(*layer, legs); }, [&] { other = ask(*layer, legs); });
   same(one, "with a second thread running");
   same(other, "with a second thread running");
 }
 
-void clearances(const Bench& bench, Report& report) {
+void clearances(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "clearance");
   const Environment& layer = probe.layer();
   report.expect(probe.has_surface() || !layer.info().threats.empty(),
@@ -105,7 +103,7 @@ void clearances(const Bench& bench, Report& report) {
 }
 
 /// `blocked` against the proofs by samples of clearance and of blocked itself.
-void blocked_legs(const Bench& bench, Report& report) {
+void blocked_legs(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "blocked");
   const Environment& layer = probe.layer();
   constexpr int kSamples = 24;
@@ -142,7 +140,7 @@ void blocked_legs(const Bench& bench, Report& report) {
 }
 
 /// The radius at which a leg just comes too near to the solid, as found by `near`.
-void blocked_just_so(const Bench& bench, Report& report) {
+void blocked_just_so(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "just so");
   const Environment& layer = probe.layer();
   for (int n = 0; n < 150 * bench.options.rounds; ++n) {
@@ -164,7 +162,7 @@ void blocked_just_so(const Bench& bench, Report& report) {
   }
 }
 
-void symmetric_and_monotone(const Bench& bench, Report& report) {
+void symmetric_and_monotone(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "symmetry");
   const Environment& layer = probe.layer();
   for (int n = 0; n < 200 * bench.options.rounds; ++n) {
@@ -181,7 +179,7 @@ void symmetric_and_monotone(const Bench& bench, Report& report) {
   }
 }
 
-void near_by(const Bench& bench, Report& report) {
+void near_by(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "near");
   const Environment& layer = probe.layer();
   for (int n = 0; n < 150 * bench.options.rounds; ++n) {
@@ -219,7 +217,7 @@ void near_by(const Bench& bench, Report& report) {
   }
 }
 
-void bounds_hold(const Bench& bench, Report& report) {
+void bounds_hold(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "bounds");
   const Environment& layer = probe.layer();
   const Ground* ground = layer.ground();
@@ -246,7 +244,7 @@ void bounds_hold(const Bench& bench, Report& report) {
 }
 
 /// From outside, the nearest obstacle is the one that would extend beyond the bounds first.
-void bounds_from_outside(const Bench& bench, Report& report) {
+void bounds_from_outside(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "outside");
   const Environment& layer = probe.layer();
   const Box bounds = layer.bounds();
@@ -270,7 +268,7 @@ void bounds_from_outside(const Bench& bench, Report& report) {
 }
 
 /// Only that an answer is returned is required.
-void odd_places(const Bench& bench, Report&) {
+void odd_places(const EnvironmentBench& bench, Report&) {
   Probe probe(bench, "odd");
   const Environment& layer = probe.layer();
   const Ground* ground = layer.ground();
@@ -300,7 +298,7 @@ void odd_places(const Bench& bench, Report&) {
   }
 }
 
-void kin(const Bench& bench, Report& report) {
+void kin(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "kin");
   const Environment& layer = probe.layer();
   const LayerInfo& info = layer.info();
@@ -344,8 +342,8 @@ void kin(const Bench& bench, Report& report) {
 
 Cases environment_cases(const EnvironmentFactory& make, const Options& options,
                         const std::shared_ptr<const World>& before) {
-  const Bench bench{make, options, before};
-  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+  const EnvironmentBench bench{make, options, before};
+  const auto made = [&](const char* name, void (*body)(const EnvironmentBench&, Report&)) {
     return make_case(name, kEnvironmentPure,
                      [bench, body](Report& report) { body(bench, report); });
   };

@@ -5,7 +5,6 @@
 namespace altiplan::conformance {
 namespace {
 
-using Bench = EnvironmentBench;
 using Rule = GridSpec::Rule;
 
 /// A grid over most of the volume, and a small one around a point of the layer.
@@ -63,7 +62,7 @@ void centres(const VoxelGrid& grid, Probe& probe, Report& report) {
   }
 }
 
-void rasters(const Bench& bench, Report& report) {
+void rasters(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "raster");
   for (int n = 0; n < 1 + bench.options.rounds / 6; ++n) {
     for (GridSpec spec : grids(probe)) {
@@ -91,7 +90,7 @@ void rasters(const Bench& bench, Report& report) {
 
 /// Layers are rasterized into the same grid: blocked cells stay blocked, and the result is
 /// reproducible.
-void drawn_over(const Bench& bench, Report& report) {
+void drawn_over(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "raster twice");
   for (const GridSpec& spec : grids(probe)) {
     VoxelGrid full(spec);
@@ -114,7 +113,7 @@ void drawn_over(const Bench& bench, Report& report) {
 }  // namespace
 
 Cases environment_grid_cases(const EnvironmentBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+  const auto made = [&](const char* name, void (*body)(const EnvironmentBench&, Report&)) {
     return make_case(name, kEnvironmentPure,
                      [bench, body](Report& report) { body(bench, report); });
   };

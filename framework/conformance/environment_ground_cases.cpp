@@ -7,9 +7,7 @@
 namespace altiplan::conformance {
 namespace {
 
-using Bench = EnvironmentBench;
-
-void points(const Bench& bench, Report& report) {
+void points(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "ground");
   const Environment& layer = probe.layer();
   const Ground* ground = layer.ground();
@@ -54,7 +52,7 @@ void points(const Bench& bench, Report& report) {
   });
 }
 
-void legs(const Bench& bench, Report& report) {
+void legs(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "ground legs");
   const Ground* ground = probe.layer().ground();
   if (ground == nullptr) {
@@ -113,7 +111,7 @@ void legs(const Bench& bench, Report& report) {
   }
 }
 
-void distances(const Bench& bench, Report& report) {
+void distances(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "ground distances");
   const Environment& layer = probe.layer();
   const Ground* ground = layer.ground();
@@ -136,7 +134,7 @@ void distances(const Bench& bench, Report& report) {
   }
 }
 
-void slopes(const Bench& bench, Report& report) {
+void slopes(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "slopes");
   const Ground* ground = probe.layer().ground();
   for (int n = 0; n < 150 * bench.options.rounds && ground != nullptr; ++n) {
@@ -159,7 +157,7 @@ void slopes(const Bench& bench, Report& report) {
 }
 
 /// Hill climbing to steep ground, by random steps of decreasing size.
-void steepest_slopes(const Bench& bench, Report& report) {
+void steepest_slopes(const EnvironmentBench& bench, Report& report) {
   Probe probe(bench, "steepest");
   const Ground* ground = probe.layer().ground();
   const double apart = std::max(1e-6 * probe.size(), 1e-3);
@@ -199,7 +197,7 @@ void steepest_slopes(const Bench& bench, Report& report) {
 }  // namespace
 
 Cases environment_ground_cases(const EnvironmentBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+  const auto made = [&](const char* name, void (*body)(const EnvironmentBench&, Report&)) {
     return make_case(name, kEnvironmentPure,
                      [bench, body](Report& report) { body(bench, report); });
   };

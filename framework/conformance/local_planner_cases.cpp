@@ -8,7 +8,7 @@ namespace {
 
 using namespace pilots;
 
-constexpr int kMax = 3000;  // more than three times the straight path
+constexpr int kMaxSteps = 3000;  // more than three times the straight path
 
 void open_world(const Bench& bench, Report& report) {
   const double reach = bench.reach();
@@ -30,7 +30,7 @@ void open_world(const Bench& bench, Report& report) {
     requests.push_back(level);
   }
   for (const Request& request : requests) {
-    const Flown flight = fly(bench, request, report, kMax);
+    const Flown flight = fly(bench, request, report, kMaxSteps);
     report.expect(flight.last.outcome == PilotStep::Outcome::arrived ||
                       request.goal.reached_at(flight.last.next.position),
                   kOpen, [&] {
@@ -50,7 +50,7 @@ void among_balls(const Bench& bench, Report& report) {
   for (int n = 0; n < bench.options.rounds; ++n) {
     Request request = bench.flight(nullptr, reach);
     request.world = balls(drawn(bench.options.seed * 100 + std::uint64_t(n), request, reach));
-    fly(bench, request, report, kMax);
+    fly(bench, request, report, kMaxSteps);
   }
 }
 
@@ -58,7 +58,7 @@ void goal_out_of_reach(const Bench& bench, Report& report) {
   const double reach = bench.reach();
   Request request = bench.flight(nullptr, reach);
   request.world = balls({{request.goal.position, reach}});
-  const Flown flight = fly(bench, request, report, kMax);
+  const Flown flight = fly(bench, request, report, kMaxSteps);
   const bool may_arrive = !bench.make()->traits().avoids_obstacles;
   report.expect(may_arrive || flight.last.outcome != PilotStep::Outcome::arrived, kArrived,
                 [&] { return "the goal lies inside a ball, and the pilot reports arrived"; });
@@ -90,7 +90,7 @@ void world_changes(const Bench& bench, Report& report) {
   std::vector<std::shared_ptr<const World>> alive;
   std::vector<Change> changes;
   std::vector<SensedObstacle> moving;
-  fly(bench, request, report, kMax, [&](Observation& seen, int step) {
+  fly(bench, request, report, kMaxSteps, [&](Observation& seen, int step) {
     if (step % 100 == 50) {
       const Vec3 ahead = (seen.goal.position - seen.state.position).normalized();
       const Sphere ball{seen.state.position + 0.6 * reach * ahead, 0.2 * reach};

@@ -16,7 +16,7 @@ constexpr const char* kProved =
     "Planner contract 3: no_route is `proved` only where the planner's search space holds no route";
 
 constexpr Lanes kFewest{6, true};
-constexpr Lanes kMax{26, false};
+constexpr Lanes kMaxLanes{26, false};
 
 /// Cells to search, hand-made and random.
 std::vector<Scene> mazes(const PlannerBench& bench) {
@@ -66,7 +66,7 @@ void complete(const PlannerBench& bench, Report& report) {
     report.expect(!surely_open || solved, kComplete, [&] {
       return scene.name + ": there is a route, the planner returned " + text(result);
     });
-    if (shortest(scene, kMax) == kInfinity) {
+    if (shortest(scene, kMaxLanes) == kInfinity) {
       report.expect(result.status == PlanStatus::no_route, kComplete, [&] {
         return scene.name + ": expected no_route, the planner returned " + text(result);
       });

@@ -13,11 +13,11 @@ constexpr const char* kExcess =
     "valid";
 constexpr const char* kShort =
     "Smoother contract 3: routes of one or two points are returned unchanged";
-constexpr const char* kPure =
+constexpr const char* kSmootherPure =
     "Smoother: const and shareable; equal requests give equal routes, on any threads, in any order";
 constexpr const char* kStatus = "Smoother: a failure is a status, never an exception";
 
-struct Bench {
+struct SmootherBench {
   Factory<Smoother> make;
   Options options;
 
@@ -150,7 +150,7 @@ std::vector<std::pair<const char*, std::function<void(Request&)>>> rules(double 
   return all;
 }
 
-void laws_under_every_limit(const Bench& bench, Report& report) {
+void laws_under_every_limit(const SmootherBench& bench, Report& report) {
   const auto smoother = bench.make();
   for (const auto& [name, set] : rules(bench.options.unit_m)) {
     for (int n = 0; n < bench.options.rounds; ++n) {
@@ -170,7 +170,7 @@ void laws_under_every_limit(const Bench& bench, Report& report) {
   }
 }
 
-void over_ground_and_with_a_heading(const Bench& bench, Report& report) {
+void over_ground_and_with_a_heading(const SmootherBench& bench, Report& report) {
   const auto smoother = bench.make();
   Scene ridge = ridge_scene(bench.options.unit_m);
   for (int n = 0; n < 4 * bench.options.rounds; ++n) {
@@ -187,7 +187,7 @@ void over_ground_and_with_a_heading(const Bench& bench, Report& report) {
   }
 }
 
-void short_routes(const Bench& bench, Report& report) {
+void short_routes(const SmootherBench& bench, Report& report) {
   const auto smoother = bench.make();
   const Scene scene = bench.world(0);
   const Vec3 start = scene.request.start.position;
@@ -200,7 +200,7 @@ void short_routes(const Bench& bench, Report& report) {
   }
 }
 
-void odd_routes(const Bench& bench, Report& report) {
+void odd_routes(const SmootherBench& bench, Report& report) {
   const auto smoother = bench.make();
   for (int n = 0; n < bench.options.rounds; ++n) {
     const Scene scene = bench.world(n);
@@ -229,7 +229,7 @@ void odd_routes(const Bench& bench, Report& report) {
   }
 }
 
-void budgets(const Bench& bench, Report& report) {
+void budgets(const SmootherBench& bench, Report& report) {
   const auto smoother = bench.make();
   Scene scene = bench.world(1);
   const Polyline walk = sound_walk(scene, RandomStream(bench.options.seed).sub("budget"));
@@ -246,7 +246,7 @@ void budgets(const Bench& bench, Report& report) {
   judged(report, *smoother, walk, scene);
 }
 
-void answers_again(const Bench& bench, Report& report) {
+void answers_again(const SmootherBench& bench, Report& report) {
   const auto smoother = bench.make();
   const Scene scene = bench.world(2);
   const Route a = sound_walk(scene, RandomStream(bench.options.seed).sub("again"));
@@ -255,7 +255,7 @@ void answers_again(const Bench& bench, Report& report) {
   const PlanResult first_a = smoother->smooth(a, to_a);
   const PlanResult first_b = smoother->smooth(b, scene.request);
   const auto same = [&](const PlanResult& first, const PlanResult& again, const char* which) {
-    report.expect(equal(first, again), kPure, [&] {
+    report.expect(equal(first, again), kSmootherPure, [&] {
       return scene.name + ", " + which + ": first " + text(first) + ", then " + text(again);
     });
   };
@@ -277,8 +277,8 @@ void answers_again(const Bench& bench, Report& report) {
 }  // namespace
 
 Cases smoother_cases(const Factory<Smoother>& make, const Options& options) {
-  const Bench bench{make, options};
-  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
+  const SmootherBench bench{make, options};
+  const auto made = [&](const char* name, void (*body)(const SmootherBench&, Report&)) {
     return make_case(name, kStatus, [bench, body](Report& report) { body(bench, report); });
   };
   return {made("nothing_gets_worse_under_any_limit", laws_under_every_limit),

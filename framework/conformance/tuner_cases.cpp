@@ -18,14 +18,14 @@ constexpr const char* kScores =
 constexpr const char* kEqual =
     "Tuner contract 3: equal spaces, streams and scores give equal batches";
 
-using Point = std::vector<double>;
-using Batch = std::vector<Point>;
-using Score = std::function<double(const Point&)>;
+using TunerPoint = std::vector<double>;
+using Batch = std::vector<TunerPoint>;
+using Score = std::function<double(const TunerPoint&)>;
 
 /// A search that asks for more counts as endless for a study.
 constexpr std::size_t kMaxPoints = 100'000;
 
-struct Bench {
+struct TunerBench {
   Factory<Tuner> make;
   Options options;
 
@@ -42,16 +42,16 @@ std::vector<std::pair<const char*, std::vector<Dimension>>> spaces() {
           {"nothing to choose", {{"a", 2, 2, -1}, {"w", 0, 1, 0}}}};
 }
 
-std::string text(const Point& point) {
+std::string point_text(const TunerPoint& point) {
   std::string all = "(";
   for (const double x : point) {
-    all += (all.size() > 1 ? ", " : "") + conformance::text(x);
+    all += (all.size() > 1 ? ", " : "") + text(x);
   }
   return all + ")";
 }
 
 /// Why the point does not lie in the space; "" if it does.
-std::string misplaced(const Point& point, const std::vector<Dimension>& space) {
+std::string misplaced(const TunerPoint& point, const std::vector<Dimension>& space) {
   if (point.size() != space.size()) {
     return std::to_string(point.size()) + " numbers for " + std::to_string(space.size()) +
            " dimensions";
@@ -61,21 +61,20 @@ std::string misplaced(const Point& point, const std::vector<Dimension>& space) {
     const Dimension& d = space[i];
     const double slack = d.group >= 0 ? 1e-9 : 0;
     if (!(point[i] >= d.min - slack && point[i] <= d.max + slack)) {
-      return "'" + d.name + "' is outside " + conformance::text(d.min) + " to " +
-             conformance::text(d.max);
+      return "'" + d.name + "' is outside " + text(d.min) + " to " + text(d.max);
     }
     sums[d.group] += point[i];
   }
   sums.erase(-1);
   for (const auto& [group, sum] : sums) {
     if (std::abs(sum - 1) > 1e-9) {
-      return "group " + std::to_string(group) + " sums to " + conformance::text(sum);
+      return "group " + std::to_string(group) + " sums to " + text(sum);
     }
   }
   return "";
 }
 
-std::vector<Batch> search(const Bench& bench, const std::vector<Dimension>& space,
+std::vector<Batch> search(const TunerBench& bench, const std::vector<Dimension>& space,
                           const Score& score, Report& report, const std::string& name) {
   const auto tuner = bench.make();
   const auto search = tuner->begin(space, bench.stream());
@@ -88,11 +87,11 @@ std::vector<Batch> search(const Bench& bench, const std::vector<Dimension>& spac
   while (points < kMaxPoints) {
     batches.push_back(search->ask());
     std::vector<double> scores;
-    for (const Point& point : batches.back()) {
+    for (const TunerPoint& point : batches.back()) {
       const std::string wrong = misplaced(point, space);
       if (!report.expect(wrong.empty(), kInside, [&] {
-            return name + ", point " + std::to_string(points + scores.size()) + " " + text(point) +
-                   ": " + wrong;
+            return name + ", point " + std::to_string(points + scores.size()) + " " +
+                   point_text(point) + ": " + wrong;
           })) {
         return batches;
       }
@@ -110,7 +109,7 @@ std::vector<Batch> search(const Bench& bench, const std::vector<Dimension>& spac
   return batches;
 }
 
-double bowl(const Point& point) {
+double bowl(const TunerPoint& point) {
   double sum = 0;
   for (const double x : point) {
     sum += (x - 0.3) * (x - 0.3);
@@ -118,7 +117,7 @@ double bowl(const Point& point) {
   return sum;
 }
 
-void inside(const Bench& bench, Report& report) {
+void inside(const TunerBench& bench, Report& report) {
   for (const auto& [name, space] : spaces()) {
     const auto batches = search(bench, space, bowl, report, name);
     report.expect(batches.size() > 1, kInside, [&, name = name] {
@@ -127,14 +126,15 @@ void inside(const Bench& bench, Report& report) {
   }
 }
 
-void failures(const Bench& bench, Report& report) {
+void failures(const TunerBench& bench, Report& report) {
   const double inf = kInfinity;
   const std::vector<std::pair<const char*, Score>> scores{
-      {"every score infinite", [inf](const Point&) { return inf; }},
-      {"half of the scores infinite", [inf](const Point& p) { return p[0] < 0.4 ? inf : bowl(p); }},
-      {"all scores equal", [](const Point&) { return 1.0; }},
-      {"huge scores", [](const Point& p) { return 1e300 * bowl(p); }},
-      {"negative scores", [](const Point& p) { return -bowl(p); }}};
+      {"every score infinite", [inf](const TunerPoint&) { return inf; }},
+      {"half of the scores infinite",
+       [inf](const TunerPoint& p) { return p[0] < 0.4 ? inf : bowl(p); }},
+      {"all scores equal", [](const TunerPoint&) { return 1.0; }},
+      {"huge scores", [](const TunerPoint& p) { return 1e300 * bowl(p); }},
+      {"negative scores", [](const TunerPoint& p) { return -bowl(p); }}};
   for (const auto& [what, score] : scores) {
     for (const auto& [name, space] : spaces()) {
       search(bench, space, score, report, std::string(name) + ", " + what);
@@ -142,7 +142,7 @@ void failures(const Bench& bench, Report& report) {
   }
 }
 
-void equal_searches(const Bench& bench, Report& report) {
+void equal_searches(const TunerBench& bench, Report& report) {
   for (const auto& [name, space] : spaces()) {
     const auto& dimensions = space;
     const char* const what = name;
@@ -159,7 +159,7 @@ void equal_searches(const Bench& bench, Report& report) {
 }
 
 /// Two searches of one tuner, interleaved.
-void searches_in_turns(const Bench& bench, Report& report) {
+void searches_in_turns(const TunerBench& bench, Report& report) {
   const auto tuner = bench.make();
   const std::vector<Dimension> space = spaces()[3].second;
   const auto one = tuner->begin(space, bench.stream());
@@ -174,7 +174,7 @@ void searches_in_turns(const Bench& bench, Report& report) {
       return;
     }
     std::vector<double> scores;
-    for (const Point& point : a) {
+    for (const TunerPoint& point : a) {
       scores.push_back(bowl(point));
     }
     one->tell(scores);
@@ -184,8 +184,9 @@ void searches_in_turns(const Bench& bench, Report& report) {
 }  // namespace
 
 Cases tuner_cases(const Factory<Tuner>& make, const Options& options) {
-  const Bench bench{make, options};
-  const auto made = [&](const char* name, const char* thrown, void (*body)(const Bench&, Report&)) {
+  const TunerBench bench{make, options};
+  const auto made = [&](const char* name, const char* thrown,
+                        void (*body)(const TunerBench&, Report&)) {
     return make_case(name, thrown, [bench, body](Report& report) { body(bench, report); });
   };
   return {made("points_lie_in_the_space", kInside, inside),

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Time kHeartbeatPeriod{1000};
 /// So long a stop may wait.
-constexpr Time kSlice{100};
+constexpr Time kReceiveSlice{100};
 /// Longer than any packet takes on a line of 57,600 baud.
 constexpr Time kSilence{60};
 
@@ -89,7 +89,7 @@ Vehicle await_vehicle(Link& link, std::optional<std::uint8_t> system, Time timeo
     if (stop.stop_requested()) {
       throw LinkError("interrupted before a vehicle was heard");
     }
-    const std::optional<Packet> packet = link.receive(std::min(kSlice, timeout));
+    const std::optional<Packet> packet = link.receive(std::min(kReceiveSlice, timeout));
     const auto* heartbeat = packet ? std::get_if<Heartbeat>(&packet->message) : nullptr;
     if (heartbeat != nullptr && heartbeat->type != kGroundStation &&
         heartbeat->autopilot != kNoAutopilot &&
@@ -111,7 +111,7 @@ void run(Link& link, MissionTransfer& transfer, const std::stop_token& stop) {
       link.send(transfer.cancel());
       break;
     }
-    const Time wait = std::clamp(transfer.due() - time_now(), Time(0), kSlice);
+    const Time wait = std::clamp(transfer.due() - time_now(), Time(0), kReceiveSlice);
     if (const std::optional<Packet> packet = link.receive(wait)) {
       link.send(transfer.take(time_now(), *packet));
     }

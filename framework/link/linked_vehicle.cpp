@@ -16,7 +16,7 @@ using host::VehicleLost;
 
 constexpr Time kLostAfter{5000};
 /// So long a stop may wait.
-constexpr Time kSlice{100};
+constexpr Time kFeedSlice{100};
 /// Longer than a heartbeat takes to report a mode that has just been changed.
 constexpr Time kStrange{1500};
 /// Without a position, or the item that it flies to, the vehicle is asked to send them.
@@ -87,7 +87,7 @@ void LinkedVehicle::await_position() {
       return;
     }
     expect_in_reach();
-    feed_.next(kSlice);
+    feed_.next(kFeedSlice);
     if (time_now() >= ask_at) {
       ask_for_reports();
       ask_at += kAskForReports;
@@ -152,7 +152,7 @@ void LinkedVehicle::expect_done(const CommandLong& command, const std::string& w
     feed_.send(command);
     for (const Time end = time_now() + kTimeout; time_now() < end && !stop_.stop_requested();) {
       expect_in_reach();
-      feed_.next(kSlice);
+      feed_.next(kFeedSlice);
       if (const std::optional<int> result = feed_.acknowledged(command.command)) {
         if (*result == 0) {
           return;
@@ -170,7 +170,7 @@ void LinkedVehicle::expect_done(const CommandLong& command, const std::string& w
 void LinkedVehicle::await_words() {
   constexpr Time kWordsFollow{300};
   for (const Time end = time_now() + kWordsFollow; time_now() < end && !stop_.stop_requested();) {
-    feed_.next(kSlice);
+    feed_.next(kFeedSlice);
   }
 }
 
@@ -223,7 +223,7 @@ FlownTo LinkedVehicle::go(RouteAhead& route, const State& from, const State& com
 std::optional<State> LinkedVehicle::next_position() {
   while (!stop_.stop_requested()) {
     expect_in_reach();
-    std::optional<State> state = feed_.next(kSlice);
+    std::optional<State> state = feed_.next(kFeedSlice);
     if (is_flying_ && feed_.mode() == FlightMode::mission && !hands_back_) {
       flown_item_ = std::max(flown_item_, feed_.current_item().value_or(0) - number_of(0));
     }

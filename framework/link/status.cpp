@@ -9,9 +9,9 @@
 namespace altiplan::link {
 namespace {
 
-constexpr Time kAskAgain{1000};
+constexpr Time kStatusPeriod{1000};
 /// So long a stop may wait.
-constexpr Time kSlice{100};
+constexpr Time kStatusSlice{100};
 
 /// MAV_CMD_REQUEST_MESSAGE
 CommandLong request_for(std::uint32_t message, const Address& vehicle) {
@@ -122,9 +122,9 @@ Status read_status(Link& link, const Vehicle& vehicle, Time timeout, const std::
   while (time_now() < end && !requests(status).empty() && !stop.stop_requested()) {
     if (time_now() >= ask_at) {
       link.send(requests(status));
-      ask_at += kAskAgain;
+      ask_at += kStatusPeriod;
     }
-    const std::optional<Packet> packet = link.receive(kSlice);
+    const std::optional<Packet> packet = link.receive(kStatusSlice);
     if (packet && packet->sender == vehicle.address) {
       take(link, packet->message, status);
     }
@@ -139,9 +139,9 @@ std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, T
   while (time_now() < end && !stop.stop_requested()) {
     if (time_now() >= ask_at) {
       link.send(Message(request_for(HomePosition::kDeclared.id, vehicle.address)));
-      ask_at += kAskAgain;
+      ask_at += kStatusPeriod;
     }
-    const std::optional<Packet> packet = link.receive(kSlice);
+    const std::optional<Packet> packet = link.receive(kStatusSlice);
     const bool is_ours = packet && packet->sender == vehicle.address;
     if (const auto* home = is_ours ? std::get_if<HomePosition>(&packet->message) : nullptr) {
       return kit::MissionPoint{home->longitude / 1e7, home->latitude / 1e7, home->altitude / 1e3};

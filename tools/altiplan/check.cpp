@@ -18,7 +18,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct CheckArguments {
   std::optional<std::string> result;
   std::optional<std::string> route;
   PlanCheck plan;
@@ -92,7 +92,7 @@ int report(const host::Mission& mission, const Route& route,
   return valid ? kDone : kNoRoute;
 }
 
-int check_result(const Arguments& arguments) {
+int check_result(const CheckArguments& arguments) {
   const host::StoredResult stored = host::read_result(*arguments.result, arguments.overrides);
   for (const std::string& changed : stored.changed) {
     warn(changed + " has changed since the result was written");
@@ -108,7 +108,7 @@ int check_result(const Arguments& arguments) {
                 host::build_events(config, mission), arguments.plan.json);
 }
 
-int check_route(const Arguments& arguments) {
+int check_route(const CheckArguments& arguments) {
   const host::Config config = host::load_scenario(*arguments.plan.scenario, arguments.overrides);
   const host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
@@ -183,12 +183,12 @@ std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
 }
 
 /// A mission whose ending is not its format's is told by --scenario or --terrain.
-bool is_plan(const Arguments& arguments) {
+bool is_plan(const CheckArguments& arguments) {
   return arguments.result && (arguments.plan.terrain || arguments.plan.scenario);
 }
 
 /// Throws UsageError for options that do not fit together.
-void expect_fitting(const Arguments& arguments, const std::vector<Option*>& outputs) {
+void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>& outputs) {
   if (!arguments.result && !arguments.route) {
     throw UsageError{
         "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
@@ -217,7 +217,7 @@ void expect_fitting(const Arguments& arguments, const std::vector<Option*>& outp
 void add_check(App& app, Action& action) {
   App* command =
       app.add_subcommand("check", "judge a mission (.plan, .waypoints, …), a result or a route");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CheckArguments>();
   auto* result =
       command->add_option("file", arguments->result,
                           "result file of altiplan run (JSON), or with --terrain or --scenario a "

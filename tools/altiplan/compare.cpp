@@ -14,7 +14,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string first;
   std::string second;
   std::vector<std::string> metrics;
@@ -139,7 +139,7 @@ study::ResultOf results_of(const std::string& file) {
 }
 
 void print_origins(const study::Comparison& comparison, const study::StudyData& first,
-                   const study::StudyData& second, const Arguments& arguments) {
+                   const study::StudyData& second, const CompareArguments& arguments) {
   if (comparison.other_origins.empty()) {
     return;
   }
@@ -172,7 +172,7 @@ bool print_verdict(const study::Comparison& comparison) {
   return !comparison.is_worse() && comparison.is_whole();
 }
 
-int compare(const Arguments& arguments) {
+int compare(const CompareArguments& arguments) {
   std::optional<Activity> activity("reading the databases");
   const study::StudyData first = study::load_study_data({arguments.first});
   const study::StudyData second = study::load_study_data({arguments.second});
@@ -198,7 +198,7 @@ int compare(const Arguments& arguments) {
 
 void add_compare(App& app, Action& action) {
   App* command = app.add_subcommand("compare", "compare the results of two executions of a study");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   command->add_option("first", arguments->first, "reference study database")
       ->required()
       ->type_name("DB");

@@ -10,7 +10,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct DownloadArguments {
   LinkOptions link;
   std::string out;
 };
@@ -39,7 +39,7 @@ void add_others(Connection& connection, host::Plan& plan) {
   }
 }
 
-int download_plan(const Arguments& arguments) {
+int download_plan(const DownloadArguments& arguments) {
   expect_writable(arguments.out, "-o");
   return connected(arguments.link, [&](Connection& connection) {
     const auto& [address, heartbeat] = connection.vehicle;
@@ -80,7 +80,7 @@ int print_status(const LinkOptions& options) {
 void add_download(App& app, Action& action) {
   App* command =
       app.add_subcommand("download", "write a vehicle's mission, fence and rally points to a file");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DownloadArguments>();
   add_link_options(*command, "--from", arguments->link);
   command->add_option("-o,--out", arguments->out, "output file: .plan, or .waypoints (mission)")
       ->required()

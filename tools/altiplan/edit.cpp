@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct EditArguments {
   std::vector<std::string> files;
   bool has_browser = true;
   host::Overrides overrides;
@@ -67,7 +67,7 @@ struct Opened {
   std::vector<host::Assignment> given;
 };
 
-Opened open_all(const Arguments& arguments) {
+Opened open_all(const EditArguments& arguments) {
   Opened all;
   std::shared_ptr<host::Registry> registry;
   for (const std::string& file : arguments.files) {
@@ -148,7 +148,7 @@ void open_browser(const std::string& address) {
   ::_exit(code);
 }
 
-int edit(const Arguments& arguments) {
+int edit(const EditArguments& arguments) {
   const Opened opened = open_all(arguments);
   // Plugins are loaded and their files read once, for all that is forked from here.
   const host::Mission mission = host::build_mission(opened.pipelines.front().config, 1);
@@ -178,7 +178,7 @@ int edit(const Arguments& arguments) {
 void add_edit(App& app, Action& action) {
   App* command =
       app.add_subcommand("edit", "edit a scenario in the browser, planned again while you drag");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EditArguments>();
   command
       ->add_option("files", arguments->files,
                    "pipelines of one scenario, a scenario (YAML) or a result (JSON)")

@@ -12,7 +12,7 @@ namespace {
 
 using Format = kit::MissionFile::Format;
 
-struct Arguments {
+struct ExportArguments {
   RouteExport route;
   std::optional<std::string> to;
   std::optional<std::string> out;
@@ -28,7 +28,7 @@ const std::map<std::string, std::optional<Format>>& formats() {
 }
 
 /// The format's name: as given, or by the output file's extension.
-std::string format_of(const Arguments& arguments) {
+std::string format_of(const ExportArguments& arguments) {
   if (arguments.to) {
     return *arguments.to;
   }
@@ -58,7 +58,7 @@ bool write_fence(const LoadedRoute& route, const std::string& file) {
   return fence.text.has_value();
 }
 
-int export_result(const Arguments& arguments) {
+int export_result(const ExportArguments& arguments) {
   expect_writable(arguments.out, "-o");
   expect_writable(arguments.fence, "--fence");
   const std::optional<LoadedRoute> route = loaded(arguments.route, arguments.out);
@@ -84,7 +84,7 @@ int export_result(const Arguments& arguments) {
 void add_export(App& app, Action& action) {
   App* command =
       app.add_subcommand("export", "write a result's route for ground control stations and maps");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   command
       ->add_option("--to", arguments->to,
                    "format: qgc-plan, waypoints, kml, geojson, gpx or csv (default: by -o)")

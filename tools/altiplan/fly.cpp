@@ -16,7 +16,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct FlyArguments {
   RouteExport route;
   LinkOptions link;
   std::optional<std::string> out;
@@ -109,7 +109,7 @@ host::RunResult flown(const host::Config& config, const std::vector<Vec3>& place
   return host::run(config, options);
 }
 
-int fly(const Arguments& arguments, const LoadedRoute& loaded, const host::Exported& written,
+int fly(const FlyArguments& arguments, const LoadedRoute& loaded, const host::Exported& written,
         const host::Plan& plan, Connection& connection) {
   const host::Config config = with_flight(loaded.config);
   const std::vector<Vec3> places = places_of(written.mission, loaded);
@@ -131,7 +131,7 @@ int fly(const Arguments& arguments, const LoadedRoute& loaded, const host::Expor
   return connection.stop.stop_requested() ? kInterrupted : result.exit_code();
 }
 
-int fly_result(const Arguments& arguments) {
+int fly_result(const FlyArguments& arguments) {
   expect_writable(arguments.file(), "--out");
   const std::optional<LoadedRoute> source = loaded(arguments.route, arguments.file());
   if (!source) {
@@ -164,7 +164,7 @@ int fly_result(const Arguments& arguments) {
 void add_fly(App& app, Action& action) {
   App* command = app.add_subcommand(
       "fly", "upload a result's route to a vehicle, follow its flight and judge it");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<FlyArguments>();
   add_link_options(*command, "--link", arguments->link);
   add_route_export(*command, arguments->route);
   add_no_fence(*command, arguments->no_fence);

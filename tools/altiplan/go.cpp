@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct GoArguments {
   std::vector<std::string> terrain;
   std::string from;
   std::string to;
@@ -67,7 +67,7 @@ host::WishedPoint point_of(const char* option, const std::string& text) {
   return {option, all[0], all[1], all.size() > 2 ? std::optional(all[2]) : std::nullopt};
 }
 
-host::RouteWish wish_of(const Arguments& arguments) {
+host::RouteWish wish_of(const GoArguments& arguments) {
   host::RouteWish wish = arguments.wish;
   wish.terrain.assign(arguments.terrain.begin(), arguments.terrain.end());
   wish.avoid.assign(arguments.avoid.begin(), arguments.avoid.end());
@@ -80,7 +80,7 @@ host::RouteWish wish_of(const Arguments& arguments) {
 }
 
 /// The folder asked for, or one named after the model, numbered if there are others.
-fs::path folder_of(const Arguments& arguments) {
+fs::path folder_of(const GoArguments& arguments) {
   const fs::path model = fs::path(arguments.terrain.front()).lexically_normal();
   const std::string stem = (model.has_filename() ? model : model.parent_path()).stem().string();
   fs::path folder = arguments.out.value_or(stem);
@@ -140,7 +140,7 @@ void print(const host::RunResult& result) {
 }
 
 /// The page, and the mission; false if the route would not be valid as a mission.
-bool write_views(const fs::path& folder, const Arguments& arguments) {
+bool write_views(const fs::path& folder, const GoArguments& arguments) {
   RouteExport route;
   route.result = folder / "result.json";
   route.overrides = arguments.overrides;
@@ -160,7 +160,7 @@ bool write_views(const fs::path& folder, const Arguments& arguments) {
   return plan.has_value();
 }
 
-int go(const Arguments& arguments) {
+int go(const GoArguments& arguments) {
   std::optional<Activity> activity("reading the model");
   const host::RouteWish wish = wish_of(arguments);
   const host::FirstRoute first(wish, arguments.overrides.plugin_path);
@@ -214,7 +214,7 @@ int go(const Arguments& arguments) {
   return is_mission ? kDone : kNoRoute;
 }
 
-void add_points(App& command, Arguments& arguments) {
+void add_points(App& command, GoArguments& arguments) {
   command
       .add_option("--terrain", arguments.terrain,
                   "elevation models, or a folder of tiles; repeatable")
@@ -236,7 +236,7 @@ void add_points(App& command, Arguments& arguments) {
       ->check(point_problem);
 }
 
-void add_wishes(App& command, Arguments& arguments) {
+void add_wishes(App& command, GoArguments& arguments) {
   host::RouteWish& wish = arguments.wish;
   command
       .add_option("--avoid", arguments.avoid,
@@ -267,7 +267,7 @@ void add_wishes(App& command, Arguments& arguments) {
 
 void add_go(App& app, Action& action) {
   App* command = app.add_subcommand("go", "a first route between two points, without YAML");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<GoArguments>();
   add_points(*command, *arguments);
   add_wishes(*command, *arguments);
   add_plugin_path(*command, arguments->overrides);

@@ -10,7 +10,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct InfoArguments {
   std::vector<std::string> files;
   std::string crs;
   bool json = false;
@@ -30,7 +30,7 @@ void print(const std::string& file, const host::FileInfo& info) {
   }
 }
 
-int info_of(const Arguments& arguments) {
+int info_of(const InfoArguments& arguments) {
   host::Registry registry(host::Registry::search_path(arguments.overrides.plugin_path));
   int code = kDone;
   host::Json all = host::Json::array();
@@ -62,7 +62,7 @@ int info_of(const Arguments& arguments) {
 void add_info(App& app, Action& action) {
   App* command =
       app.add_subcommand("info", "what a file holds: elevation model, zones, map, mission");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InfoArguments>();
   command->add_option("files", arguments->files, "files")->required();
   command->add_option("--crs", arguments->crs, "coordinate system of a model that names none")
       ->type_name("EPSG:CODE");

@@ -10,13 +10,13 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct MergeArguments {
   std::vector<std::string> stores;
   std::string out;
 };
 
 /// Throws Error if the output exists and is not among the merged stores: its runs would be lost.
-void expect_no_loss(const Arguments& arguments) {
+void expect_no_loss(const MergeArguments& arguments) {
   std::error_code error;
   const bool merged =
       std::any_of(arguments.stores.begin(), arguments.stores.end(), [&](const std::string& store) {
@@ -28,7 +28,7 @@ void expect_no_loss(const Arguments& arguments) {
   }
 }
 
-int merge(const Arguments& arguments) {
+int merge(const MergeArguments& arguments) {
   expect_store_writable(arguments.out, "-o");
   expect_no_loss(arguments);
   const study::Merged merged =
@@ -49,7 +49,7 @@ int merge(const Arguments& arguments) {
 
 void add_merge(App& app, Action& action) {
   App* command = app.add_subcommand("merge", "merge the shards of a study into one database");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MergeArguments>();
   command->add_option("stores", arguments->stores, "study databases, all of the same study")
       ->required()
       ->type_name("DB");

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct NewArguments {
   std::string kind;
   std::string name;
   bool python = false;
@@ -77,7 +77,7 @@ std::string offered_by(const std::string& name) {
 }
 
 /// The error message for the kind or the name; "" if both are valid.
-std::string usage_problem(const Arguments& arguments) {
+std::string usage_problem(const NewArguments& arguments) {
   const std::string found = ", found '" + arguments.name + "'";
   if (!contains(kKinds, arguments.kind)) {
     return "KIND: expected one of " + listed(kKinds) + ", found '" + arguments.kind + "'";
@@ -127,7 +127,7 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
 
 /// The project's files: the shared templates and those of the kind. `X.part` is not itself a file
 /// of the project: its text replaces @X@ in the others.
-Files project(const Arguments& arguments) {
+Files project(const NewArguments& arguments) {
   const fs::path templates = host::install_root() / "share/altiplan/templates";
   Files all;
   add_files(templates / "shared", all);
@@ -157,7 +157,7 @@ Files project(const Arguments& arguments) {
 }
 
 /// A plugin in Python is one file, in the current folder.
-int new_script(const Arguments& arguments) {
+int new_script(const NewArguments& arguments) {
   const fs::path file = arguments.name + ".py";
   if (fs::exists(fs::symlink_status(file))) {
     throw Error("'" + file.string() + "' exists and is not overwritten: choose another name");
@@ -172,7 +172,7 @@ int new_script(const Arguments& arguments) {
   return kDone;
 }
 
-int new_project(const Arguments& arguments) {
+int new_project(const NewArguments& arguments) {
   const std::string problem = usage_problem(arguments);
   if (!problem.empty()) {
     std::cerr << "altiplan: new: " << problem << '\n';
@@ -208,7 +208,7 @@ int new_project(const Arguments& arguments) {
 void add_new(App& app, Action& action) {
   App* command =
       app.add_subcommand("new", "create a complete out-of-tree plugin project in ./NAME");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<NewArguments>();
   command
       ->add_option("kind", arguments->kind,
                    "kind: constraint, environment, local_planner, planner, smoother or tuner")

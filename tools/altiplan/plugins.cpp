@@ -14,18 +14,18 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct PluginsArguments {
   std::string name;
   host::Overrides overrides;
   bool strict = false;
   bool json = false;
 };
 
-host::Registry registry_of(const Arguments& arguments) {
+host::Registry registry_of(const PluginsArguments& arguments) {
   return host::Registry(host::Registry::search_path(arguments.overrides.plugin_path));
 }
 
-int plugins(const Arguments& arguments) {
+int plugins(const PluginsArguments& arguments) {
   host::Registry registry = registry_of(arguments);
   const std::vector<host::Library> libraries = host::examine_all(registry);
   if (arguments.json) {
@@ -44,7 +44,7 @@ int plugins(const Arguments& arguments) {
   return refused && arguments.strict ? kBadPlugin : kDone;
 }
 
-int describe(const Arguments& arguments) {
+int describe(const PluginsArguments& arguments) {
   host::Registry registry = registry_of(arguments);
   const std::vector<host::Description> all = host::describe_plugin(registry, arguments.name);
   if (arguments.json) {
@@ -61,7 +61,7 @@ int describe(const Arguments& arguments) {
   return kDone;
 }
 
-int schema(const Arguments& arguments) {
+int schema(const PluginsArguments& arguments) {
   host::Registry registry = registry_of(arguments);
   std::cout << host::file_text(host::any_file_schema(host::choices_of(registry),
                                                      host::fields_of<study::StudyFile>(),
@@ -70,7 +70,7 @@ int schema(const Arguments& arguments) {
 }
 
 App* add(App& app, Action& action, const char* name, const char* sentence,
-         const std::shared_ptr<Arguments>& arguments, int (*call)(const Arguments&)) {
+         const std::shared_ptr<PluginsArguments>& arguments, int (*call)(const PluginsArguments&)) {
   App* command = app.add_subcommand(name, sentence);
   add_plugin_path(*command, arguments->overrides);
   command->add_flag("--json", arguments->json, "print as JSON");
@@ -81,20 +81,20 @@ App* add(App& app, Action& action, const char* name, const char* sentence,
 }  // namespace
 
 void add_plugins(App& app, Action& action) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PluginsArguments>();
   App* command =
       add(app, action, "plugins", "list the loaded plugins, and why other libraries are refused",
           arguments, &plugins);
   command->add_flag("--strict", arguments->strict, "exit with code 4 if a library is refused");
   set_example(*command, "altiplan plugins --plugin-path build/my_plugins");
 
-  arguments = std::make_shared<Arguments>();
+  arguments = std::make_shared<PluginsArguments>();
   command = add(app, action, "describe", "print a plugin's description, parameters and traits",
                 arguments, &describe);
   command->add_option("name", arguments->name, "name of the plugin")->required();
   set_example(*command, "altiplan describe astar");
 
-  arguments = std::make_shared<Arguments>();
+  arguments = std::make_shared<PluginsArguments>();
   command = add(app, action, "schema", "print the JSON Schema (draft-07) of the input files",
                 arguments, &schema);
   set_example(*command, "altiplan schema > altiplan.schema.json");

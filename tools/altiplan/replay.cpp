@@ -17,7 +17,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string store;
   std::string run;
   bool stored = false;
@@ -51,7 +51,7 @@ int report(std::FILE* to, const study::StoredRun& stored, const host::Json& resu
   return kNoRoute;
 }
 
-int hand_out(std::FILE* to, const Arguments& arguments, const study::StoredRun& stored,
+int hand_out(std::FILE* to, const ReplayArguments& arguments, const study::StoredRun& stored,
              const host::Config& config, const std::string& key, const host::RunResult& result) {
   const host::Json json = host::result_json(config, result);
   const int code = report(to, stored, json, key);
@@ -62,7 +62,8 @@ int hand_out(std::FILE* to, const Arguments& arguments, const study::StoredRun& 
 }
 
 /// Printed if a plugin ends the process.
-host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const host::Config& config,
+host::ProcessGuard::CrashReport crash_report(const ReplayArguments& arguments,
+                                             const host::Config& config,
                                              const study::StoredRun& stored,
                                              const host::RunResult& result) {
   host::ProcessGuard::CrashReport words;
@@ -80,7 +81,7 @@ host::ProcessGuard::CrashReport crash_report(const Arguments& arguments, const h
   return words;
 }
 
-int run_again(const Arguments& arguments, const study::Store& store,
+int run_again(const ReplayArguments& arguments, const study::Store& store,
               const study::StoredRun& stored) {
   const host::Config config = study::config_of(store, stored, arguments.overrides.plugin_path);
   const study::StudyBudget budget = study::budget_of(store);
@@ -125,7 +126,7 @@ int run_again(const Arguments& arguments, const study::Store& store,
   return code;
 }
 
-int write_stored(const Arguments& arguments, const study::StoredRun& stored) {
+int write_stored(const ReplayArguments& arguments, const study::StoredRun& stored) {
   if (stored.result.empty()) {
     throw Error("the run '" + study::run_name(stored) + "' has no result: " + stored.outcome +
                 (stored.message.empty() ? "" : " (" + stored.message + ")"));
@@ -144,7 +145,7 @@ int write_stored(const Arguments& arguments, const study::StoredRun& stored) {
   return kDone;
 }
 
-int replay(const Arguments& arguments) {
+int replay(const ReplayArguments& arguments) {
   expect_writable(arguments.out, "--out");
   expect_writable(arguments.trace, "--trace");
   expect_apart(arguments.out, "--out", {arguments.store});
@@ -158,7 +159,7 @@ int replay(const Arguments& arguments) {
 void add_replay(App& app, Action& action) {
   App* command =
       app.add_subcommand("replay", "repeat a run of a study and compare the results bit for bit");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("store", arguments->store, "study database")->required()->type_name("DB");
   command
       ->add_option("run", arguments->run,

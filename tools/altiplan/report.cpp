@@ -13,7 +13,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::vector<std::string> stores;
   std::string folder;  ///< "" if no page is requested
   std::optional<std::string> arena;
@@ -24,7 +24,7 @@ struct Arguments {
 
 /// The command line; with --no-times without the file names, so that the page depends only on the
 /// runs.
-std::string command_of(const Arguments& arguments) {
+std::string command_of(const ReportArguments& arguments) {
   std::string command = "altiplan report";
   if (arguments.no_times) {
     command += " DB -o DIR --no-times";
@@ -40,7 +40,7 @@ std::string command_of(const Arguments& arguments) {
   return command;
 }
 
-int write_page(const Arguments& arguments) {
+int write_page(const ReportArguments& arguments) {
   study::report::expect_report_folder(arguments.folder);
   std::optional<Activity> activity("reading the runs");
   const study::report::Source source = study::report::load_source(arguments.stores);
@@ -76,7 +76,7 @@ int write_page(const Arguments& arguments) {
   return kDone;
 }
 
-int report(const Arguments& arguments) {
+int report(const ReportArguments& arguments) {
   if (arguments.arena) {
     expect_store_writable(*arguments.arena, "--arena");
   }
@@ -93,7 +93,7 @@ int report(const Arguments& arguments) {
 void add_report(App& app, Action& action) {
   App* command =
       app.add_subcommand("report", "write a study's results as a page with figures and tables");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReportArguments>();
   command->add_option("stores", arguments->stores, "study databases; all shards of one study")
       ->required()
       ->type_name("DB");

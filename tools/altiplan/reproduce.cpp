@@ -17,7 +17,7 @@ namespace altiplan::cli {
 namespace {
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ReproduceArguments {
   std::vector<std::string> papers;
   std::vector<std::string> rows;
   std::optional<std::string> out;
@@ -60,7 +60,7 @@ class Folder {
   std::optional<host::Unfinished> unfinished_;
 };
 
-std::vector<study::Paper> papers_of(const Arguments& arguments) {
+std::vector<study::Paper> papers_of(const ReproduceArguments& arguments) {
   std::vector<study::Paper> papers;
   const std::vector<std::string> all{"all"};
   for (const std::string& word : arguments.papers.empty() ? all : arguments.papers) {
@@ -71,7 +71,7 @@ std::vector<study::Paper> papers_of(const Arguments& arguments) {
   return papers;
 }
 
-int list(const Arguments& arguments) {
+int list(const ReproduceArguments& arguments) {
   host::Json json = host::Json::array();
   for (const study::Paper& paper : papers_of(arguments)) {
     if (arguments.json) {
@@ -105,7 +105,7 @@ std::string line_of(const study::Paper& paper, const study::PaperRuns& runs,
 /// Runs the papers one after the other and prints each table when its runs have ended.
 class Reproduction {
  public:
-  Reproduction(const Arguments& arguments, const Folder& folder)
+  Reproduction(const ReproduceArguments& arguments, const Folder& folder)
       : arguments_(arguments), options_(arguments.options) {
     options_.folder = folder.path();
     options_.study.say = [this](const std::string& text) {
@@ -174,14 +174,14 @@ class Reproduction {
     }
   }
 
-  const Arguments& arguments_;
+  const ReproduceArguments& arguments_;
   study::ReproduceOptions options_;
   ProgressLine line_;
   host::Json papers_ = host::Json::array();
   MarkCounts all_;
 };
 
-int reproduce(const Arguments& arguments) {
+int reproduce(const ReproduceArguments& arguments) {
   const std::vector<study::Paper> papers = papers_of(arguments);
   if (papers.size() > 1 && !arguments.rows.empty()) {
     throw Error("--row: expected one paper, found " + std::to_string(papers.size()));
@@ -211,7 +211,7 @@ int reproduce(const Arguments& arguments) {
 void add_reproduce(App& app, Action& action, const std::string& command_line) {
   App* command = app.add_subcommand(
       "reproduce", "run the tables of a published paper and compare: paper, documentation, here");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReproduceArguments>();
   arguments->options.study.command = command_line;
   arguments->options.study.jobs = int(std::max(1U, std::thread::hardware_concurrency()));
   command

@@ -10,7 +10,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct SetArguments {
   std::string file;
   std::vector<std::string> set;
   host::Overrides overrides;
@@ -23,14 +23,14 @@ struct Edited {
   std::string after;
 };
 
-Edited edited(const std::filesystem::path& file, const Arguments& arguments,
+Edited edited(const std::filesystem::path& file, const SetArguments& arguments,
               host::FileOfKey which) {
   const std::string before = kit::read_file(file);
   return {file, before,
           host::with_assignments(before, file.string(), arguments.overrides.set, which)};
 }
 
-int set(Arguments arguments) {
+int set(SetArguments arguments) {
   const host::FileKind kind = host::kind_of(host::load_yaml(arguments.file));
   if (kind != host::FileKind::pipeline && kind != host::FileKind::scenario) {
     throw ConfigError({arguments.file, 0, 0, ""}, "", "expected a pipeline or a scenario");
@@ -70,7 +70,7 @@ int set(Arguments arguments) {
 void add_set(App& app, Action& action) {
   App* command = app.add_subcommand(
       "set", "change values of a pipeline or scenario file, and nothing else in it");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SetArguments>();
   command->add_option("file", arguments->file, "pipeline or scenario file (YAML)")->required();
   command
       ->add_option(

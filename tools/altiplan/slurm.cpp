@@ -17,7 +17,7 @@ namespace altiplan::cli {
 namespace fs = std::filesystem;
 namespace {
 
-struct Arguments {
+struct SlurmArguments {
   std::string study;
   std::string out;
   double chunk_minutes = 20;
@@ -46,7 +46,7 @@ std::string decimal(double value) {
   return {text, end};
 }
 
-study::SlurmJob job_of(const Arguments& arguments, const study::StudyPlan& plan) {
+study::SlurmJob job_of(const SlurmArguments& arguments, const study::StudyPlan& plan) {
   study::SlurmJob job;
   job.program = fs::canonical("/proc/self/exe");
   job.study = plan.path;
@@ -147,8 +147,8 @@ fs::path take_sample(const study::SlurmJob& job, const study::StudyPlan& plan) {
 
 /// The number of shards of an earlier call, so that its databases are continued; otherwise from the
 /// estimated time of the runs (s).
-int shards_of(const Arguments& arguments, const study::SlurmJob& job, const study::StudyPlan& plan,
-              double seconds) {
+int shards_of(const SlurmArguments& arguments, const study::SlurmJob& job,
+              const study::StudyPlan& plan, double seconds) {
   const std::vector<std::string> before = lines_of(job.folder() / "shards");
   if (!before.empty()) {
     const int shards = std::atoi(before.front().c_str());
@@ -180,7 +180,7 @@ void submit_jobs(const study::SlurmJob& job, const study::StudyPlan& plan, doubl
               submitted.array.c_str(), submitted.merge.c_str(), job.out.c_str());
 }
 
-int slurm(const Arguments& arguments) {
+int slurm(const SlurmArguments& arguments) {
   if (!arguments.dry_run && !study::has_command("sbatch")) {
     throw Error(
         "no sbatch on PATH: this machine cannot submit to Slurm (--dry-run only writes the "
@@ -221,7 +221,7 @@ int slurm(const Arguments& arguments) {
   return kDone;
 }
 
-void add_selection(App& command, Arguments& arguments) {
+void add_selection(App& command, SlurmArguments& arguments) {
   command
       .add_option("--jobs", arguments.jobs, "parallel runs, and processors, per task (default 1)")
       ->check(Check::between(1, 1024));
@@ -245,7 +245,7 @@ void add_selection(App& command, Arguments& arguments) {
 
 void add_slurm(App& app, Action& action) {
   App* command = app.add_subcommand("slurm", "run a study as a job array on a Slurm cluster");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SlurmArguments>();
   command->add_option("study", arguments->study, "study file (YAML)")->required();
   command->add_option("-o,--out", arguments->out, "results database (SQLite)")
       ->required()

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kDryPairs = 1000;  // checked by a dry run, which should not take long
 
-struct Arguments {
+struct StudyArguments {
   std::string study;
   std::string store;
   study::StudySelection selection;
@@ -125,7 +125,7 @@ bool print_claims(const study::StudyData& data) {
   return all_hold;
 }
 
-int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
+int dry_run(const StudyArguments& arguments, const study::StudyPlan& plan) {
   const study::StudyEstimate estimate =
       busy("trying runs", [&] { return study::estimate_study(plan, arguments.options); });
   std::printf("%zu pipeline%s x %zu scenario%s x %d repetition%s = %zu runs\n",
@@ -150,7 +150,7 @@ int dry_run(const Arguments& arguments, const study::StudyPlan& plan) {
   return kDone;
 }
 
-int study(Arguments arguments) {
+int study(StudyArguments arguments) {
   if (arguments.store.empty()) {  // a dry run still needs a temporary store
     const std::string name = "altiplan-study-" + std::to_string(getpid());
     arguments.options.store = std::filesystem::temp_directory_path() / name;
@@ -235,7 +235,7 @@ std::string read_shard(const std::string& text, study::StudySelection& selection
 }
 
 /// Options that select runs of the study.
-void add_selection(App& app, const std::shared_ptr<Arguments>& arguments) {
+void add_selection(App& app, const std::shared_ptr<StudyArguments>& arguments) {
   App* command = &app;
   command
       ->add_option_function(
@@ -263,7 +263,7 @@ void add_selection(App& app, const std::shared_ptr<Arguments>& arguments) {
 void add_study(App& app, Action& action, const std::string& command_line) {
   App* command = app.add_subcommand(
       "study", "run pipelines x scenarios x repetitions, each run in its own process; resumable");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<StudyArguments>();
   arguments->options.command = command_line;
   command->add_option("study", arguments->study, "study file (YAML)")->required();
   command

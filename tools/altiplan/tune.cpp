@@ -16,7 +16,7 @@ namespace {
 using study::report::counted;
 using study::report::readable;
 
-struct Arguments {
+struct TuneArguments {
   tune::TuneRequest request;
   tune::TuneOptions options;
   host::Overrides overrides;  ///< only the plugin path is used
@@ -109,7 +109,7 @@ void print_table(const tune::TunePlan& plan, const tune::Tuning& tuning,
   std::printf("  %s\n", repeating_call(plan, folder).c_str());
 }
 
-int tune(Arguments arguments) {
+int tune(TuneArguments arguments) {
   const std::string folder = arguments.options.out.string();
   const tune::TunePlan plan = tune::plan_tuning(arguments.request);
   ProgressLine line;
@@ -223,7 +223,7 @@ void add_how(App& command, tune::TuneRequest& request) {
 void add_tune(App& app, Action& action) {
   App* command = app.add_subcommand(
       "tune", "optimise parameters of a pipeline with a tuner plugin; resumable");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TuneArguments>();
   add_what(*command, arguments->request);
   add_how(*command, arguments->request);
   command->add_option("-o,--out", arguments->options.out, "results folder")

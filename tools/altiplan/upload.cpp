@@ -5,13 +5,13 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct UploadArguments {
   RouteExport route;
   LinkOptions link;
   bool no_fence = false;
 };
 
-int upload_result(const Arguments& arguments) {
+int upload_result(const UploadArguments& arguments) {
   const std::optional<host::Exported> written = exported(arguments.route, std::nullopt);
   if (!written) {
     return kNoRoute;
@@ -26,7 +26,7 @@ int upload_result(const Arguments& arguments) {
 void add_upload(App& app, Action& action) {
   App* command = app.add_subcommand(
       "upload", "judge a result's route, upload it to a vehicle and compare what that holds");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<UploadArguments>();
   add_link_options(*command, "--to", arguments->link);
   add_route_export(*command, arguments->route);
   add_no_fence(*command, arguments->no_fence);

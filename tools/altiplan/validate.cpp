@@ -15,7 +15,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct ValidateArguments {
   std::vector<std::string> files;
   host::Overrides overrides;
   bool json = false;
@@ -32,7 +32,7 @@ void build(const host::Config& config) {
 }
 
 /// Returns what was checked, for the user.
-std::string validate_one(const std::string& file, const Arguments& arguments) {
+std::string validate_one(const std::string& file, const ValidateArguments& arguments) {
   const host::FileKind kind = host::kind_of(host::load_yaml(file));
   if (kind == host::FileKind::study) {
     const auto plan = busy("reading the study", [&] {
@@ -56,7 +56,7 @@ std::string validate_one(const std::string& file, const Arguments& arguments) {
   return arguments.builds ? "valid, and its world can be built" : "valid";
 }
 
-int validate(const Arguments& arguments) {
+int validate(const ValidateArguments& arguments) {
   int code = kDone;
   for (const std::string& file : arguments.files) {
     try {
@@ -92,7 +92,7 @@ int explain_as_json(const host::Config& config, const std::vector<host::Explaine
 
 /// Builds the world too, since the notes and warnings of the layers come from it. The notes are
 /// printed as they arise: the extent of a layer helps to correct a volume that is refused.
-int explain(const Arguments& arguments) {
+int explain(const ValidateArguments& arguments) {
   const host::Config config = host::load_config(arguments.files[0], arguments.overrides);
   const std::vector<host::Explained> all = host::explain(config);
   if (arguments.json) {
@@ -121,7 +121,7 @@ int explain(const Arguments& arguments) {
 void add_validate(App& app, Action& action) {
   App* command = app.add_subcommand(
       "validate", "check pipeline, scenario, study and paper files without running them");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("files", arguments->files, "pipeline, scenario, study and paper files (YAML)")
       ->required();
   command->add_flag("--build", arguments->builds,
@@ -135,7 +135,7 @@ void add_validate(App& app, Action& action) {
 void add_explain(App& app, Action& action) {
   App* command = app.add_subcommand(
       "explain", "print a pipeline with all defaults and the source of each value");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pipeline", arguments->files, "pipeline file (YAML)")
       ->required()
       ->expected(1);

@@ -14,7 +14,7 @@
 namespace altiplan::cli {
 namespace {
 
-struct Arguments {
+struct ViewArguments {
   std::vector<std::string> results;
   std::optional<std::string> page;
   std::optional<std::string> png;
@@ -66,7 +66,8 @@ void write(const std::string& file, const std::string& text, const host::Json& s
 }
 
 /// Writes the PNG of the page; returns why that failed, "" if it was written.
-std::string try_png(const Arguments& arguments, const std::string& page, const host::Json& scene) {
+std::string try_png(const ViewArguments& arguments, const std::string& page,
+                    const host::Json& scene) {
   const auto chromium = host::find_chromium();
   if (!chromium) {
     return "no Chromium found (set ALTIPLAN_CHROMIUM to its path)";
@@ -85,8 +86,8 @@ std::string try_png(const Arguments& arguments, const std::string& page, const h
 }
 
 /// Writes the film, frame by frame.
-void write_film(const Arguments& arguments, const host::FilmMakers& makers, const std::string& page,
-                const host::Json& scene) {
+void write_film(const ViewArguments& arguments, const host::FilmMakers& makers,
+                const std::string& page, const host::Json& scene) {
   const double seconds = arguments.mp4_seconds.value_or(host::film_seconds(scene));
   const auto began = std::chrono::steady_clock::now();
   Activity progress("film: starting Chromium");
@@ -102,7 +103,7 @@ void write_film(const Arguments& arguments, const host::FilmMakers& makers, cons
               fixed(double(bytes.size()) / 1e6, 2).c_str(), fixed(seconds, 0).c_str());
 }
 
-std::vector<host::StoredResult> read_results(const Arguments& arguments) {
+std::vector<host::StoredResult> read_results(const ViewArguments& arguments) {
   const std::pair<const std::optional<std::string>&, const char*> outputs[] = {
       {arguments.page, "-o"},
       {arguments.png, "--png"},
@@ -134,7 +135,7 @@ host::Scene scene_of(const std::vector<host::StoredResult>& results) {
   return host::build_scene(results, [&](const std::string& what) { activity.begin(what); });
 }
 
-int view(const Arguments& arguments) {
+int view(const ViewArguments& arguments) {
   const std::optional<host::FilmMakers> makers =
       arguments.mp4 ? std::optional<host::FilmMakers>(std::in_place) : std::nullopt;
   const host::Scene scene = scene_of(read_results(arguments));
@@ -168,7 +169,7 @@ int view(const Arguments& arguments) {
 
 void add_view(App& app, Action& action) {
   App* command = app.add_subcommand("view", "show results in a 3-D page that works offline");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ViewArguments>();
   command
       ->add_option("results", arguments->results,
                    "result files of altiplan run, all in the same world (JSON)")

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMargin = 0.05;         ///< of the pilot's reach: the pilot takes over below this
 constexpr double kClearMargin = 0.075;   ///< above this the route is clear again
-constexpr double kMinWay = 1e-3;         ///< metres: no leg back to the route is shorter
+constexpr double kMinLeg = 1e-3;         ///< metres: no leg back to the route is shorter
 const double kGentleTurn = radians(30);  ///< of a hand-back, at both ends of its leg
 constexpr double kMinSpeed = 0.1;        ///< m/s: an aeroplane may stand against the wind
 constexpr int kMaxStuck = 3;
@@ -149,7 +149,7 @@ bool Flight::hand_back() {
     const double s = std::min(route_.progress + reach_ * k / 8, route_.path.length());
     const Vec3 q = route_.path.at(s);
     const Vec3 leg = q - state_.position;
-    if (leg.norm() <= kMinWay) {
+    if (leg.norm() <= kMinLeg) {
       continue;
     }
     const Vec3 onward = s < route_.path.length() ? Vec3(route_.path.next_waypoint(s) - q) : leg;

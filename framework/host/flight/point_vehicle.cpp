@@ -4,7 +4,7 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kMinWay = 1e-3;    ///< metres: a shorter rest of a leg is flown with the step
+constexpr double kMinRest = 1e-3;   ///< metres: a shorter rest of a leg is flown with the step
 constexpr double kMinShare = 1e-9;  ///< of a step: a shorter rest is rounding error, not flown
 }  // namespace
 
@@ -16,7 +16,7 @@ FlownTo PointVehicle::follow(RouteAhead& route, const State& from, double durati
     const Vec3 next = route.path.next_waypoint(route.progress);
     const Vec3 way = next - now.position;
     const double to_next = way.norm();
-    if (to_next <= kMinWay && route.progress + kMinWay >= route.path.length()) {
+    if (to_next <= kMinRest && route.progress + kMinRest >= route.path.length()) {
       return FlownTo::end_of_route;
     }
     if (to_next == 0) {
@@ -24,7 +24,7 @@ FlownTo PointVehicle::follow(RouteAhead& route, const State& from, double durati
       continue;
     }
     const double v = request_->vehicle.speed_at(request_->world->clearance(now.position));
-    const bool whole = to_next - v * left <= kMinWay;
+    const bool whole = to_next - v * left <= kMinRest;
     const double run = whole ? to_next : v * left;
     route.progress = whole ? route.path.end_of_leg(route.progress) : route.progress + run;
     const double dt = run / v;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/words.hpp"
+
 namespace altiplan::host {
 namespace {
 
@@ -44,10 +46,6 @@ double lowest_of(const Vehicle& vehicle) {
   return lowest;
 }
 }  // namespace
-
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptions& options,
                                   double tolerance, bool beside_turns, const Vehicle& vehicle) {

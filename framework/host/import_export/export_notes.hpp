@@ -9,9 +9,6 @@
 
 namespace altiplan::host {
 
-/// "1 turn", "2 turns".
-std::string counted(std::size_t count, const std::string& what);
-
 /// How the turns were written and judged, and how autopilots fly them where that differs.
 /// `beside_turns`: the points do not satisfy what the turns do.
 std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptions& options,

@@ -7,7 +7,7 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using kit::AltitudeFrame;
 using kit::MissionItem;
 using kit::MissionPoint;
@@ -117,8 +117,8 @@ class KmlWriter {
   std::string out_;
 };
 
-Json ring_json(const kit::Ring& ring, int decimals) {
-  Json corners = Json::array();
+OrderedJson ring_json(const kit::Ring& ring, int decimals) {
+  OrderedJson corners = OrderedJson::array();
   for (std::size_t n = 0; n <= ring.size(); ++n) {
     const kit::Point2& p = ring[n % ring.size()];
     corners.push_back({rounded(p[0], decimals), rounded(p[1], decimals)});
@@ -126,14 +126,14 @@ Json ring_json(const kit::Ring& ring, int decimals) {
   return corners;
 }
 
-Json zone_json(const MissionZone& zone, const Decimals& decimals) {
+OrderedJson zone_json(const MissionZone& zone, const Decimals& decimals) {
   const kit::Polygon polygon = outline_of(zone);
-  Json rings = Json::array({ring_json(polygon.outline, decimals.degrees)});
+  OrderedJson rings = OrderedJson::array({ring_json(polygon.outline, decimals.degrees)});
   for (const kit::Ring& hole : polygon.holes) {
     rings.push_back(ring_json(hole, decimals.degrees));
   }
   const auto limit = [&](const std::optional<double>& value) {
-    return value ? Json(rounded(*value, decimals.metres)) : Json(nullptr);
+    return value ? OrderedJson(rounded(*value, decimals.metres)) : OrderedJson(nullptr);
   };
   return {{"type", "Feature"},
           {"properties",
@@ -181,16 +181,16 @@ std::string geojson_text(const MissionText& text) {
   const Decimals& decimals = text.decimals;
   const kit::MissionFile& mission = text.mission;
   const AltitudeFrame frame = mission.items.front().at.frame;
-  Json line = Json::array();
+  OrderedJson line = OrderedJson::array();
   for (const MissionItem& item : mission.items) {
     line.push_back({rounded(item.at.lon, decimals.degrees), rounded(item.at.lat, decimals.degrees),
                     rounded(item.at.altitude_m, decimals.metres)});
   }
-  Json properties{{"name", mission.name},
-                  {"role", "route"},
-                  {"altitude_frame", name(frame)},
-                  {"altitudes", std::string("metres ") + words_of(frame)}};
-  Json times = Json::array();
+  OrderedJson properties{{"name", mission.name},
+                         {"role", "route"},
+                         {"altitude_frame", name(frame)},
+                         {"altitudes", std::string("metres ") + words_of(frame)}};
+  OrderedJson times = OrderedJson::array();
   for (const double time_s : text.times_s) {
     times.push_back(rounded(time_s, 3));
   }
@@ -203,13 +203,14 @@ std::string geojson_text(const MissionText& text) {
     properties["home"] = {rounded(home.lon, decimals.degrees), rounded(home.lat, decimals.degrees),
                           rounded(home.altitude_m, decimals.metres)};
   }
-  Json features = Json::array({{{"type", "Feature"},
-                                {"properties", properties},
-                                {"geometry", {{"type", "LineString"}, {"coordinates", line}}}}});
+  OrderedJson features =
+      OrderedJson::array({{{"type", "Feature"},
+                           {"properties", properties},
+                           {"geometry", {{"type", "LineString"}, {"coordinates", line}}}}});
   for (const MissionZone& zone : mission.zones) {
     features.push_back(zone_json(zone, decimals));
   }
-  const Json json{{"type", "FeatureCollection"}, {"features", features}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const OrderedJson json{{"type", "FeatureCollection"}, {"features", features}};
+  return json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 }  // namespace altiplan::host

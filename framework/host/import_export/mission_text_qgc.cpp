@@ -8,7 +8,7 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::json;  // keys in alphabetical order, as QGroundControl writes them
+using SortedJson = nlohmann::json;  // keys in alphabetical order, as QGroundControl writes them
 
 /// QGroundControl's number for the altitude frame.
 int altitude_mode(int mav_frame) {
@@ -20,14 +20,14 @@ int altitude_mode(int mav_frame) {
                                               : kSea;
 }
 
-Json item_json(const PlanItem& item, std::size_t number) {
-  Json params = Json::array();
+SortedJson item_json(const PlanItem& item, std::size_t number) {
+  SortedJson params = SortedJson::array();
   for (const double value : item.params) {
-    params.push_back(std::isnan(value) ? Json() : Json(value));
+    params.push_back(std::isnan(value) ? SortedJson() : SortedJson(value));
   }
-  Json json{{"type", "SimpleItem"},    {"autoContinue", item.continues},
-            {"command", item.command}, {"doJumpId", number},
-            {"frame", item.frame},     {"params", params}};
+  SortedJson json{{"type", "SimpleItem"},    {"autoContinue", item.continues},
+                  {"command", item.command}, {"doJumpId", number},
+                  {"frame", item.frame},     {"params", params}};
   constexpr int kWithoutPlace = 2;  // MAV_FRAME_MISSION
   if (item.frame != kWithoutPlace) {
     json["AMSLAltAboveTerrain"] = nullptr;
@@ -37,10 +37,11 @@ Json item_json(const PlanItem& item, std::size_t number) {
   return json;
 }
 
-Json lat_lon(const PlanItem& item) { return {item.params[4], item.params[5]}; }
+SortedJson lat_lon(const PlanItem& item) { return {item.params[4], item.params[5]}; }
 
-Json polygon_json(const std::vector<PlanItem>& fence, std::size_t first, std::size_t corners) {
-  Json outline = Json::array();
+SortedJson polygon_json(const std::vector<PlanItem>& fence, std::size_t first,
+                        std::size_t corners) {
+  SortedJson outline = SortedJson::array();
   for (std::size_t n = first; n < first + corners; ++n) {
     outline.push_back(lat_lon(fence[n]));
   }
@@ -49,9 +50,9 @@ Json polygon_json(const std::vector<PlanItem>& fence, std::size_t first, std::si
           {"version", 1}};
 }
 
-Json fence_json(const std::vector<PlanItem>& fence) {
-  Json polygons = Json::array();
-  Json circles = Json::array();
+SortedJson fence_json(const std::vector<PlanItem>& fence) {
+  SortedJson polygons = SortedJson::array();
+  SortedJson circles = SortedJson::array();
   for (std::size_t n = 0; n < fence.size();) {
     const PlanItem& item = fence[n];
     const bool keep_in = item.command == Command::kFenceCircleIn;
@@ -73,8 +74,8 @@ Json fence_json(const std::vector<PlanItem>& fence) {
   return {{"circles", circles}, {"polygons", polygons}, {"version", 2}};
 }
 
-Json rally_json(const std::vector<PlanItem>& rally) {
-  Json points = Json::array();
+SortedJson rally_json(const std::vector<PlanItem>& rally) {
+  SortedJson points = SortedJson::array();
   for (const PlanItem& item : rally) {
     points.push_back({item.params[4], item.params[5], item.params[6]});
   }
@@ -107,27 +108,28 @@ std::string row(const PlanItem& item, std::size_t number, bool is_current,
 std::string plan_text(const Plan& plan) {
   const Decimals& decimals = plan.decimals;
   const kit::MissionPoint home = home_of(plan);
-  Json items = Json::array();
+  SortedJson items = SortedJson::array();
   for (const PlanItem& item : plan.items) {
     items.push_back(item_json(item, items.size() + 1));
   }
   const int frame = plan.items.empty() ? 0 : plan.items.front().frame;
-  const Json json{{"fileType", "Plan"},
-                  {"version", 1},
-                  {"groundStation", "QGroundControl"},
-                  {"mission",
-                   {{"version", 2},
-                    {"firmwareType", plan.autopilot},
-                    {"vehicleType", plan.vehicle},
-                    {"cruiseSpeed", plan.speed_mps},
-                    {"hoverSpeed", plan.speed_mps},
-                    {"globalPlanAltitudeMode", altitude_mode(frame)},
-                    {"plannedHomePosition",
-                     {rounded(home.lat, decimals.degrees), rounded(home.lon, decimals.degrees),
-                      rounded(home.altitude_m, decimals.metres)}},
-                    {"items", items}}},
-                  {"geoFence", fence_json(plan.fence)},
-                  {"rallyPoints", rally_json(plan.rally)}};
+  const SortedJson json{
+      {"fileType", "Plan"},
+      {"version", 1},
+      {"groundStation", "QGroundControl"},
+      {"mission",
+       {{"version", 2},
+        {"firmwareType", plan.autopilot},
+        {"vehicleType", plan.vehicle},
+        {"cruiseSpeed", plan.speed_mps},
+        {"hoverSpeed", plan.speed_mps},
+        {"globalPlanAltitudeMode", altitude_mode(frame)},
+        {"plannedHomePosition",
+         {rounded(home.lat, decimals.degrees), rounded(home.lon, decimals.degrees),
+          rounded(home.altitude_m, decimals.metres)}},
+        {"items", items}}},
+      {"geoFence", fence_json(plan.fence)},
+      {"rallyPoints", rally_json(plan.rally)}};
   return json.dump(4) + "\n";
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::chrono::seconds kPatience(20);
+constexpr std::chrono::seconds kAnswerTimeout(20);
 
 bool has(const char* method, const ScriptObject& object) {
   const Json& methods = object.made().at("methods");
@@ -80,7 +80,7 @@ class ScriptLegConstraint final : public ScriptConstraint {
     static const World kNothing;  // where no world is known
     const ScriptAsked asked{leg.world != nullptr ? leg.world : &kNothing};
     return object()
-        .answer({{{"admits", true}}, std::move(numbers)}, asked, kPatience)
+        .answer({{{"admits", true}}, std::move(numbers)}, asked, kAnswerTimeout)
         .head.at("yes")
         .get<bool>();
   }
@@ -95,7 +95,7 @@ void ScriptConstraint::do_tighten(Limits& limits, const Request& request) const 
   tightened.limits = limits;
   const Json told = object_
                         ->answer({{{"tighten", script_values(tightened)}}, {}},
-                                 {request.world.get(), &request}, kPatience)
+                                 {request.world.get(), &request}, kAnswerTimeout)
                         .head.at("limits");
   const auto at_least = [&](const char* name, double& limit) {
     limit = std::max(limit, found(told, name).value_or(limit));
@@ -134,7 +134,7 @@ std::vector<Violation> ScriptConstraint::do_violations(const Polyline& route,
   }
   const ScriptMessage answer =
       object_->answer({{{"violations", script_values(request)}}, std::move(numbers)},
-                      {request.world.get(), &request}, kPatience);
+                      {request.world.get(), &request}, kAnswerTimeout);
   for (const Json& told : answer.head.at("violations")) {
     violations.push_back({"", told.at(0).get<std::size_t>(), told.at(1).get<double>(),
                           told.at(2).get<double>(), told.at(3).get<std::string>()});

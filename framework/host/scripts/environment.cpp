@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::chrono::seconds kPatience(600);  ///< to build a layer
+constexpr std::chrono::seconds kBuildTimeout(600);  ///< to build a layer
 
 /// As if a file had the values.
 Value value_of(const Json& json) {
@@ -132,7 +132,7 @@ std::unique_ptr<Environment> ground_of(const Json& told, const std::vector<doubl
 std::unique_ptr<Environment> script_environment(ScriptSource source, const Site& site) {
   const ScriptMessage built = ScriptObject(std::move(source))
                                   .answer({{{"build", script_values(site)}}, {}},
-                                          {site.before, nullptr, &site.frame}, kPatience);
+                                          {site.before, nullptr, &site.frame}, kBuildTimeout);
   if (built.head.contains("ground")) {
     return ground_of(built.head["ground"], built.numbers, site);
   }

@@ -27,7 +27,7 @@ Declared either(const Json& field, const Make& make) {
   return value.is_null() ? Declared(std::optional<T>()) : Declared(std::optional<T>(make(value)));
 }
 
-Declared value_of(const Json& field) {
+Declared default_of(const Json& field) {
   const auto type = field.at("type").get<std::string>();
   const Json& value = field.at("default");
   if (type == "boolean") {
@@ -77,7 +77,7 @@ ScriptField field_of(const Json& declared) {
   spec.above = declared.at("above").get<bool>();
   spec.min_items = declared.at("min_items").get<std::size_t>();
   spec.choices = declared.at("choices").get<std::vector<std::string>>();
-  field.value = value_of(declared);
+  field.value = default_of(declared);
   return field;
 }
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kDescriptor = 3;  ///< at which _worker.py talks
-constexpr auto kPatience = std::chrono::seconds(20);
+constexpr auto kMessageTimeout = std::chrono::seconds(20);
 constexpr std::size_t kMaxHead = 1 << 28;
 constexpr std::size_t kMaxNumbers = 1 << 27;  ///< both as _worker.py has them
 
@@ -71,7 +71,7 @@ std::string ending(int how) {
 
 ScriptWorker::ScriptWorker(const fs::path& file)
     : file_(file), program_(command_of(file), {{kDescriptor}, ""}) {
-  const Clock::time_point until = Clock::now() + kPatience;
+  const Clock::time_point until = Clock::now() + kMessageTimeout;
   const std::optional<ScriptMessage> hello = receive(until);
   if (!hello || !hello->head.contains("process")) {
     throw PluginError("its process says nothing: is " + interpreter().string() + " Python 3.9?");
@@ -100,7 +100,7 @@ void ScriptWorker::send(const Json& head, std::span<const double> numbers) {
   if (!numbers.empty()) {
     std::memcpy(bytes.data() + sizeof lengths + text.size(), numbers.data(), numbers.size_bytes());
   }
-  if (!program_.send(bytes, Clock::now() + kPatience)) {
+  if (!program_.send(bytes, Clock::now() + kMessageTimeout)) {
     (void)receive(Clock::now());  // may tell why
     fail_as_ended();
   }
@@ -164,9 +164,9 @@ void ScriptWorker::fail_as_ended() const {
 
 ScriptMessage ScriptWorker::answer_to(const Json& head) {
   send(head);
-  std::optional<ScriptMessage> answer = receive(Clock::now() + kPatience);
+  std::optional<ScriptMessage> answer = receive(Clock::now() + kMessageTimeout);
   if (!answer) {
-    throw PluginError("did not answer within " + std::to_string(kPatience.count()) + " s",
+    throw PluginError("did not answer within " + std::to_string(kMessageTimeout.count()) + " s",
                       Reason::never_stopped);
   }
   return *std::move(answer);

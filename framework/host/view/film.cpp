@@ -16,8 +16,8 @@ namespace {
 using Clock = Program::Clock;
 
 constexpr int kPerSecond = 25;
-constexpr int kWidth = 1280;
-constexpr int kHeight = 720;
+constexpr int kPixelsWide = 1280;
+constexpr int kPixelsHigh = 720;
 constexpr std::uintmax_t kMaxBytes = 4'000'000'000;
 /// Without any progress of a program.
 constexpr auto kTimeout = std::chrono::seconds(60);
@@ -98,7 +98,7 @@ double film_seconds(const Json& scene) {
 
 std::string film(const FilmMakers& makers, const std::string& page, double seconds,
                  const FilmProgress& progress) {
-  ShownPage shown(makers.chromium, page, "?film&theme=light", kWidth, kHeight, kTimeout);
+  ShownPage shown(makers.chromium, page, "?film&theme=light", kPixelsWide, kPixelsHigh, kTimeout);
   Encoder encoder(makers);
   const auto frames = std::size_t(std::lround(seconds * kPerSecond));
   shown.run("altiplan.film.begin(" + Json(seconds).dump() + ")");

@@ -272,14 +272,14 @@ TrackVerdict verdict_of(const FlightResult& flight) {
 }
 
 /// The status of a flight with that verdict.
-std::string status_of(const TrackVerdict& verdict) {
+std::string status_of_track(const TrackVerdict& verdict) {
   return name(verdict.collisions > 0 ? RunStatus::collided
               : !verdict.reached     ? RunStatus::not_reached
               : !verdict.check.ok()  ? RunStatus::rejected
                                      : RunStatus::solved);
 }
 
-std::string first_found(const TrackVerdict& verdict, const Track& track) {
+std::string first_found_on(const TrackVerdict& verdict, const Track& track) {
   if (verdict.check.ok()) {
     return "";
   }
@@ -323,7 +323,7 @@ Json flight_scene(const StoredResult& stored, const Mission& mission,
                                ? verdict_of(detail.judged->flight.value())
                                : judged(track, stored.telemetry, mission, events);
   const std::string whose = stored.file + ": the flight";
-  set_status(json, stored.file, status_of(now), first_found(now, track));
+  set_status(json, stored.file, status_of_track(now), first_found_on(now, track));
   json["metrics"] = metrics_now(flight.at("metrics"), to_json(now.measures));
   for (const char* name : {"cross_track_max_m", "cross_track_p999_m", "height_error_max_m"}) {
     if (const auto error = flight.find(name); error != flight.end() && !error->is_null()) {

@@ -25,7 +25,7 @@ Vec3 direction(int n) {
   return {flat * std::cos(turn), flat * std::sin(turn), z};
 }
 
-std::size_t farthest(const std::vector<Vec3>& points, const Vec3& along) {
+std::size_t farthest_index(const std::vector<Vec3>& points, const Vec3& along) {
   return std::size_t(
       std::max_element(points.begin(), points.end(),
                        [&](const Vec3& p, const Vec3& q) { return p.dot(along) < q.dot(along); }) -
@@ -46,7 +46,8 @@ double width_of(const std::vector<Vec3>& points) {
     spread += (p - mean) * (p - mean).transpose();
   }
   const Vec3 across = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
-  return (points[farthest(points, across)] - points[farthest(points, -across)]).dot(across);
+  return (points[farthest_index(points, across)] - points[farthest_index(points, -across)])
+      .dot(across);
 }
 
 double outer_of(const std::vector<Vec3>& corners) {
@@ -108,8 +109,8 @@ BodyPart hull_part(const std::vector<Vec3>& points) {
   double least_support = kInfinity;
   for (int n = 0; n < kDirections; ++n) {
     const Vec3 along = direction(n);
-    const std::size_t first = farthest(points, along);
-    const std::size_t last = farthest(points, -along);
+    const std::size_t first = farthest_index(points, along);
+    const std::size_t last = farthest_index(points, -along);
     is_corner[first] = is_corner[last] = true;
     least_support = std::min(least_support, points[first].dot(along));
   }

@@ -9,16 +9,16 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr double kLeft = 12;
-constexpr double kRight = kFigureWidth - 16;
-constexpr double kRow = 44;
-constexpr double kFirst = 16;
+constexpr double kBoxLeft = 12;
+constexpr double kBoxRight = kFigureWidth - 16;
+constexpr double kBoxRow = 44;
+constexpr double kBoxFirst = 16;
 constexpr double kTitle = 24;    // of a panel
 constexpr double kBetween = 14;  // panels
 /// Up to that many runs are all shown as points.
 constexpr std::size_t kFew = 40;
 /// Maximum number of points of a box; more would smear.
-constexpr std::size_t kMaxPoints = 150;
+constexpr std::size_t kBoxMaxPoints = 150;
 
 /// The sample's indices shown as points: all of a small sample, otherwise the farthest outliers.
 std::vector<std::size_t> shown_points(const Sample& sample) {
@@ -33,7 +33,7 @@ std::vector<std::size_t> shown_points(const Sample& sample) {
   const auto far = [&](std::size_t at) { return std::abs(sample.values[at] - sample.box->median); };
   std::stable_sort(shown.begin(), shown.end(),
                    [&](std::size_t a, std::size_t b) { return far(a) > far(b); });
-  shown.resize(std::min(shown.size(), kMaxPoints));
+  shown.resize(std::min(shown.size(), kBoxMaxPoints));
   return shown;
 }
 
@@ -67,8 +67,8 @@ std::size_t draw_row(Canvas& canvas, const StudyData& data, const MetricAnalysis
   const std::string right = sample.box ? "median " + with_unit(metric, sample.box->median, 4) +
                                              "  ·  n = " + grouped(sample.values.size())
                                        : "no solved run has a value";
-  canvas.text(kLeft, y, pipeline_label(data, p, room_beside(right)), "strong");
-  canvas.text(kRight, y, right, "quiet", Anchor::end);
+  canvas.text(kBoxLeft, y, pipeline_label(data, p, room_beside(right)), "strong");
+  canvas.text(kBoxRight, y, right, "quiet", Anchor::end);
   if (!sample.box) {
     return 0;
   }
@@ -137,7 +137,7 @@ class BoxPanel {
   /// Returns the y below it.
   double draw(Canvas& canvas, double y) {
     if (!panel_.title.empty()) {
-      canvas.text(kLeft, y + kFirst, panel_.title);
+      canvas.text(kBoxLeft, y + kBoxFirst, panel_.title);
       y += kTitle;
     }
     std::vector<double> values;
@@ -147,13 +147,13 @@ class BoxPanel {
         values.push_back(without_noise(metric_.metric, value));
       }
     }
-    const Axis axis = Axis::around(values, kLeft, kRight);
-    const double bottom = y + kFirst + kRow * double(samples_.size()) - 10;
-    draw_bottom(canvas, axis, y + kFirst + 4, bottom,
+    const Axis axis = Axis::around(values, kBoxLeft, kBoxRight);
+    const double bottom = y + kBoxFirst + kBoxRow * double(samples_.size()) - 10;
+    draw_bottom(canvas, axis, y + kBoxFirst + 4, bottom,
                 axis_label(metric_label(metric_.metric), axis));
     for (std::size_t p = 0; p < samples_.size(); ++p) {
-      hidden_ +=
-          draw_row(canvas, data_, metric_, p, samples_[p], axis, y + kFirst + kRow * double(p));
+      hidden_ += draw_row(canvas, data_, metric_, p, samples_[p], axis,
+                          y + kBoxFirst + kBoxRow * double(p));
     }
     return bottom + kAxisHeight;
   }

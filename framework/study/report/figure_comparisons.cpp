@@ -8,10 +8,10 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr double kLeft = 12;
-constexpr double kRight = kFigureWidth - 16;
-constexpr double kFirst = 16;
-constexpr double kRow = 44;
+constexpr double kComparisonLeft = 12;
+constexpr double kComparisonRight = kFigureWidth - 16;
+constexpr double kComparisonFirst = 16;
+constexpr double kComparisonRow = 44;
 constexpr double kSecondLine = 15;
 constexpr std::size_t kMaxRows = 16;
 
@@ -43,7 +43,7 @@ Axis axis_of(const Rows& rows, bool ratio) {
     values.push_back(interval ? interval->low : median);
     values.push_back(interval ? interval->high : median);
   }
-  return Axis::around(values, kLeft, kRight);
+  return Axis::around(values, kComparisonLeft, kComparisonRight);
 }
 
 std::string effect_text(const Comparison& row) {
@@ -64,13 +64,13 @@ void draw_names(Canvas& canvas, const StudyData& data, const Comparison& row, bo
                 bool two_lines) {
   const std::string against = (ratio ? "/ " : "− ") + pipeline_label(data, row.against, 50);
   if (two_lines) {
-    canvas.text(kLeft, y, pipeline_label(data, row.pipeline, room_beside(effect_text(row))),
-                "strong");
-    canvas.text(kLeft, y + kSecondLine, against, "strong");
+    canvas.text(kComparisonLeft, y,
+                pipeline_label(data, row.pipeline, room_beside(effect_text(row))), "strong");
+    canvas.text(kComparisonLeft, y + kSecondLine, against, "strong");
   } else {
-    canvas.text(kLeft, y, pipeline_label(data, row.pipeline) + " " + against, "strong");
+    canvas.text(kComparisonLeft, y, pipeline_label(data, row.pipeline) + " " + against, "strong");
   }
-  canvas.text(kRight, y, effect_text(row), "quiet", Anchor::end);
+  canvas.text(kComparisonRight, y, effect_text(row), "quiet", Anchor::end);
 }
 
 void draw_effect(Canvas& canvas, const PairedEffect& effect, const Axis& axis, double y,
@@ -126,20 +126,20 @@ Figure comparison_figure(const StudyData& data, const MetricAnalysis& metric) {
   const bool ratio = metric.is_ratio;
   const Axis axis = axis_of(rows, ratio);
   const double more = need_two_lines(data, rows) ? kSecondLine : 0;
-  const double bottom = kFirst + (kRow + more) * double(rows.size()) - 10;
+  const double bottom = kComparisonFirst + (kComparisonRow + more) * double(rows.size()) - 10;
   const std::string unit = ratio ? "" : metric_unit(metric.metric);
   const std::string label =
       (ratio ? "median ratio" : "median difference") + (unit.empty() ? "" : ", " + unit);
   Canvas canvas;
-  draw_bottom(canvas, axis, kFirst + 4, bottom, axis_label(label, axis));
-  double y = kFirst;
+  draw_bottom(canvas, axis, kComparisonFirst + 4, bottom, axis_label(label, axis));
+  double y = kComparisonFirst;
   for (const Comparison* row : rows) {
     draw_names(canvas, data, *row, ratio, y, more > 0);
     const double none = axis(ratio ? 1 : 0);
     canvas.line(none, y + more + 5, none, y + more + 26,
                 "reference");  // without crossing the texts
     draw_effect(canvas, row->effect, axis, y + more + 15, data.series_of(row->pipeline));
-    y += kRow + more;
+    y += kComparisonRow + more;
   }
   const std::string title = metric_title(metric.metric) + ", pipeline against pipeline";
   return {"pairs-" + slug(metric.metric), title,         caption_of(metric, rows), kFigureWidth,

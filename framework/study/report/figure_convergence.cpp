@@ -9,10 +9,10 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr double kLeft = 66;
-constexpr double kRight = kFigureWidth - 14;
-constexpr double kTop = 30;
-constexpr double kBottom = 214;
+constexpr double kConvergenceLeft = 66;
+constexpr double kConvergenceRight = kFigureWidth - 14;
+constexpr double kConvergenceTop = 30;
+constexpr double kConvergenceBottom = 214;
 constexpr double kAliveTop = 246;
 constexpr double kAliveBottom = 296;
 
@@ -121,14 +121,15 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
   const std::size_t mean = best + host::kSeriesColors.size();  // the same colour, dashed
   const double last = convergence.iterations.back();
   const double first = convergence.iterations.front();
-  const Axis along(first, std::max(last, first + 1), false, kLeft, kRight);
+  const Axis along(first, std::max(last, first + 1), false, kConvergenceLeft, kConvergenceRight);
   Canvas canvas;
-  const Axis up = is_population ? axis_up({&convergence.best, &convergence.mean}, kBottom, kTop)
-                                : axis_up({&convergence.best}, kBottom, kTop);
-  draw_left(canvas, up, kLeft, kRight, kTop,
+  const Axis up = is_population ? axis_up({&convergence.best, &convergence.mean},
+                                          kConvergenceBottom, kConvergenceTop)
+                                : axis_up({&convergence.best}, kConvergenceBottom, kConvergenceTop);
+  draw_left(canvas, up, kConvergenceLeft, kConvergenceRight, kConvergenceTop,
             axis_label(convergence.is_ratio ? "Length / final best" : "Length, m", up));
-  const double bottom = is_population ? kAliveBottom : kBottom;
-  draw_bottom(canvas, along, kTop, bottom, "Iteration, number");
+  const double bottom = is_population ? kAliveBottom : kConvergenceBottom;
+  draw_bottom(canvas, along, kConvergenceTop, bottom, "Iteration, number");
   if (is_population) {
     draw(canvas, band_of(convergence, convergence.mean), along, up, mean);
     double most = 1;
@@ -136,13 +137,14 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
       most = std::max(most, spread.high);
     }
     const Axis alive(0, 1.04 * most, false, kAliveBottom, kAliveTop);
-    draw_left(canvas, alive, kLeft, kRight, kAliveTop, "Found a route in the iteration, number");
+    draw_left(canvas, alive, kConvergenceLeft, kConvergenceRight, kAliveTop,
+              "Found a route in the iteration, number");
     draw(canvas, band_of(convergence, convergence.alive), along, alive, best);
   }
   draw(canvas, band_of(convergence, convergence.best), along, up, best);
   double y = bottom + kAxisHeight + 20;
-  y = draw_key(canvas, kLeft, y, best, "best so far");
-  y = is_population ? draw_key(canvas, kLeft, y, mean, "mean of the iteration") : y;
+  y = draw_key(canvas, kConvergenceLeft, y, best, "best so far");
+  y = is_population ? draw_key(canvas, kConvergenceLeft, y, mean, "mean of the iteration") : y;
   const std::string step = convergence.is_only_step ? "" : ", step " + printable(convergence.step);
   return {"convergence-" + slug(data.pipelines[convergence.pipeline].name) +
               (step.empty() ? "" : "-" + slug(convergence.step)),

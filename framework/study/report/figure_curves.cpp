@@ -8,10 +8,10 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr double kLeft = 48;
-constexpr double kRight = kFigureWidth - 16;
-constexpr double kTop = 12;
-constexpr double kBottom = 232;
+constexpr double kCurveLeft = 48;
+constexpr double kCurveRight = kFigureWidth - 16;
+constexpr double kCurveTop = 12;
+constexpr double kCurveBottom = 232;
 /// Profiles crowd near 1: beyond that ratio the axis is logarithmic.
 constexpr double kWideProfile = 5;
 
@@ -50,16 +50,16 @@ void draw_steps(Canvas& canvas, const Curve& curve, const Axis& axis, const Axis
 /// All curves, and below them the key with the end value of each.
 double draw_curves(Canvas& canvas, const StudyData& data, const std::vector<Curve>& curves,
                    const Axis& axis, const std::string& label, const std::string& ends) {
-  const Axis up(0, 1, false, kBottom, kTop);
-  draw_shares(canvas, kLeft, kRight, kTop, kBottom);
-  draw_bottom(canvas, axis, kTop, kBottom, label);
+  const Axis up(0, 1, false, kCurveBottom, kCurveTop);
+  draw_shares(canvas, kCurveLeft, kCurveRight, kCurveTop, kCurveBottom);
+  draw_bottom(canvas, axis, kCurveTop, kCurveBottom, label);
   for (std::size_t p = 0; p < curves.size(); ++p) {
     const std::size_t series = data.series_of(p);
     draw_steps(canvas, curves[p], axis, up, series);
     // Marks distinguish the curves without colours; each curve has them at different positions.
     for (int n = 0; n < 4; ++n) {
       const double share = (n + 0.35 + 0.6 * double(p % 7) / 7) / 4;
-      const double px = kLeft + share * (kRight - kLeft);
+      const double px = kCurveLeft + share * (kCurveRight - kCurveLeft);
       const double low = axis.logarithmic() ? std::log(axis.low()) : axis.low();
       const double high = axis.logarithmic() ? std::log(axis.high()) : axis.high();
       const double place = low + share * (high - low);
@@ -67,12 +67,13 @@ double draw_curves(Canvas& canvas, const StudyData& data, const std::vector<Curv
       canvas.mark(px, up(share_at(curves[p], at)), series, 3.2);
     }
   }
-  double y = kBottom + kAxisHeight + 20;
+  double y = kCurveBottom + kAxisHeight + 20;
   for (std::size_t p = 0; p < curves.size(); ++p) {
-    canvas.path("M" + pixels(kLeft) + " " + pixels(y - 4) + "h26", series_line(data.series_of(p)));
-    canvas.mark(kLeft + 13, y - 4, data.series_of(p), 3.4);
-    canvas.text(kLeft + 34, y, pipeline_label(data, p, 34), "ink");
-    canvas.text(kRight, y, percent(end_of(curves[p])) + ends, "quiet", Anchor::end);
+    canvas.path("M" + pixels(kCurveLeft) + " " + pixels(y - 4) + "h26",
+                series_line(data.series_of(p)));
+    canvas.mark(kCurveLeft + 13, y - 4, data.series_of(p), 3.4);
+    canvas.text(kCurveLeft + 34, y, pipeline_label(data, p, 34), "ink");
+    canvas.text(kCurveRight, y, percent(end_of(curves[p])) + ends, "quiet", Anchor::end);
     y += 18;
   }
   return y - 6;
@@ -128,7 +129,7 @@ std::optional<Figure> effort_figure(const StudyData& data, const std::string& me
   if (all.empty()) {
     return std::nullopt;
   }
-  const Axis axis = Axis::around(all, kLeft, kRight);
+  const Axis axis = Axis::around(all, kCurveLeft, kCurveRight);
   Canvas canvas;
   const double height =
       draw_curves(canvas, data, curves, axis, axis_label(metric_label(metric), axis), " solved");
@@ -168,7 +169,7 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
   const double most = *std::max_element(all.begin(), all.end());
   // From 1: no ratio to the lowest is smaller.
   const bool wide = most > kWideProfile;
-  const Axis axis(1, std::max(most * (wide ? 1.1 : 1), 1.001), wide, kLeft, kRight);
+  const Axis axis(1, std::max(most * (wide ? 1.1 : 1), 1.001), wide, kCurveLeft, kCurveRight);
   Canvas canvas;
   const double height = draw_curves(canvas, data, *curves, axis,
                                     axis_label("ratio to the lowest of all pipelines", axis), "");

@@ -10,27 +10,27 @@ namespace altiplan::study::report {
 namespace {
 
 /// Margins beside the axis for the names.
-constexpr double kLeft = 140;
-constexpr double kRight = kFigureWidth - 140;
+constexpr double kRankLeft = 140;
+constexpr double kRankRight = kFigureWidth - 140;
 constexpr double kCharacter = 7;
 constexpr double kAxisY = 58;
-constexpr double kRow = 22;
+constexpr double kRankRow = 22;
 constexpr double kBarStep = 9;
 
 /// The length of the critical difference, above the axis.
 void draw_critical(Canvas& canvas, const Axis& axis, double critical) {
   const double end = axis(1 + std::min(critical, axis.high() - 1));
-  canvas.path("M" + pixels(kLeft) + " 20v8M" + pixels(end) + " 20v8M" + pixels(kLeft) + " 24H" +
-                  pixels(end),
+  canvas.path("M" + pixels(kRankLeft) + " 20v8M" + pixels(end) + " 20v8M" + pixels(kRankLeft) +
+                  " 24H" + pixels(end),
               ink_line(1.3));
   const bool beyond = critical > axis.high() - 1;
-  canvas.text(kLeft, 14,
+  canvas.text(kRankLeft, 14,
               "critical difference " + readable(critical, 3) + (beyond ? ", beyond the axis" : ""),
               "quiet");
 }
 
 void draw_axis(Canvas& canvas, const Axis& axis, std::size_t count) {
-  canvas.line(kLeft, kAxisY, kRight, kAxisY, "ink_line");
+  canvas.line(kRankLeft, kAxisY, kRankRight, kAxisY, "ink_line");
   const std::size_t every = (count + 6) / 7;  // more numbers would not fit
   for (std::size_t rank = 1; rank <= count; ++rank) {
     canvas.line(axis(double(rank)), kAxisY - 5, axis(double(rank)), kAxisY, "ink_line");
@@ -52,7 +52,7 @@ std::optional<Figure> rank_figure(const StudyData& data, const MetricAnalysis& m
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return ranks[a] < ranks[b]; });
   Canvas canvas;
-  const Axis axis(1, double(ranks.size()), false, kLeft, kRight);
+  const Axis axis(1, double(ranks.size()), false, kRankLeft, kRankRight);
   draw_critical(canvas, axis, ranking.critical);
   draw_axis(canvas, axis, ranks.size());
   double below = kAxisY + 10;
@@ -67,7 +67,7 @@ std::optional<Figure> rank_figure(const StudyData& data, const MetricAnalysis& m
   for (std::size_t at = 0; at < order.size(); ++at) {
     const bool left = at < half;
     const double x = axis(ranks[order[at]]);
-    const double y = below + 18 + kRow * double(left ? at : order.size() - 1 - at);
+    const double y = below + 18 + kRankRow * double(left ? at : order.size() - 1 - at);
     canvas.path("M" + pixels(x) + " " + pixels(kAxisY) + "V" + pixels(y) + "H" +
                     pixels(left ? 0 : kFigureWidth),
                 series_line(data.series_of(order[at]), 1.3));
@@ -93,7 +93,7 @@ std::optional<Figure> rank_figure(const StudyData& data, const MetricAnalysis& m
                     "differ by less than Nemenyi's critical difference at 5 %; Friedman's test: " +
                     p_equals(ranking.test.p) + ".",
                 kFigureWidth,
-                below + 12 + kRow * double(half),
+                below + 12 + kRankRow * double(half),
                 canvas.take(),
                 std::move(grid)};
 }

@@ -8,10 +8,10 @@
 namespace altiplan::study::report {
 namespace {
 
-constexpr double kLeft = 8;
-constexpr double kRight = kFigureWidth - 16;
+constexpr double kSuccesLeft = 8;
+constexpr double kSuccesRight = kFigureWidth - 16;
 constexpr double kBar = 14;
-constexpr double kFirst = 16;  // base line of the first label
+constexpr double kSuccesFirst = 16;  // base line of the first label
 
 std::string solved_of(const Success& success) {
   return grouped(success.solved) + " of " + grouped(success.runs);
@@ -80,21 +80,22 @@ Figure success_figure(const StudyData& data, const Analysis& analysis) {
                 "",
                 {{"pipeline", "runs", "solved", "share", "low", "high", "interval_by"}, {}}};
   Canvas canvas;
-  const Axis axis(0, 100, false, kLeft, kRight);
-  const double bottom = kFirst + kRow * double(data.pipelines.size()) - 12;
-  draw_bottom(canvas, axis, kFirst + 4, bottom, "solved, %");
+  const Axis axis(0, 100, false, kSuccesLeft, kSuccesRight);
+  const double bottom = kSuccesFirst + kRow * double(data.pipelines.size()) - 12;
+  draw_bottom(canvas, axis, kSuccesFirst + 4, bottom, "solved, %");
   for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
     const Success& success = analysis.success[p];
-    const double y = kFirst + kRow * double(p);
+    const double y = kSuccesFirst + kRow * double(p);
     const double share = success.runs > 0 ? double(success.solved) / double(success.runs) : kNone;
     const std::string right =
         success.runs > 0 ? percent(share) + "  ·  " + solved_of(success) : "no runs";
-    canvas.text(kLeft, y, pipeline_label(data, p, room_beside(right)), "strong");
-    canvas.text(kRight, y, right, "quiet", Anchor::end);
-    canvas.rectangle(kLeft, y + 6, kRight - kLeft, kBar, " class=\"track\" fill=\"#eef1f4\"");
+    canvas.text(kSuccesLeft, y, pipeline_label(data, p, room_beside(right)), "strong");
+    canvas.text(kSuccesRight, y, right, "quiet", Anchor::end);
+    canvas.rectangle(kSuccesLeft, y + 6, kSuccesRight - kSuccesLeft, kBar,
+                     " class=\"track\" fill=\"#eef1f4\"");
     const Interval interval = success.interval.interval.value_or(Interval{kNone, kNone});
     if (success.runs > 0) {
-      canvas.rectangle(kLeft, y + 6, axis(100 * share) - kLeft, kBar,
+      canvas.rectangle(kSuccesLeft, y + 6, axis(100 * share) - kSuccesLeft, kBar,
                        series_fill(data.series_of(p)) + " fill-opacity=\"0.5\"");
     }
     if (success.interval.interval) {
@@ -125,14 +126,15 @@ Figure outcome_figure(const StudyData& data, const Analysis& analysis) {
                 {{"pipeline", "outcome", "runs"}, {}}};
   Canvas canvas;
   std::set<std::string> used;
-  double y = kFirst;
+  double y = kSuccesFirst;
   for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
     const Success& success = analysis.success[p];
-    canvas.text(kLeft, y, pipeline_label(data, p, 52), "strong");
-    canvas.rectangle(kLeft, y + 6, kRight - kLeft, kBar, " class=\"track\" fill=\"#eef1f4\"");
-    double x = kLeft;
+    canvas.text(kSuccesLeft, y, pipeline_label(data, p, 52), "strong");
+    canvas.rectangle(kSuccesLeft, y + 6, kSuccesRight - kSuccesLeft, kBar,
+                     " class=\"track\" fill=\"#eef1f4\"");
+    double x = kSuccesLeft;
     for (const auto& [outcome, count] : success.outcomes) {
-      const double width = (kRight - kLeft) * double(count) / double(success.runs);
+      const double width = (kSuccesRight - kSuccesLeft) * double(count) / double(success.runs);
       canvas.rectangle(x, y + 6, width, kBar, outcome_fill(outcome),
                        outcome_text(outcome) + ": " + grouped(count));
       x += width;
@@ -141,7 +143,7 @@ Figure outcome_figure(const StudyData& data, const Analysis& analysis) {
     }
     y += 6 + kBar + 15;
     for (const std::string& line : wrapped(breakdown(success), 56)) {
-      canvas.text(kLeft, y, line, "quiet");
+      canvas.text(kSuccesLeft, y, line, "quiet");
       y += 15;
     }
     y += 9;
@@ -154,12 +156,12 @@ Figure outcome_figure(const StudyData& data, const Analysis& analysis) {
     }
   }
   outcomes.insert(outcomes.end(), used.begin(), used.end());
-  double x = kLeft;
+  double x = kSuccesLeft;
   for (const std::string& outcome : outcomes) {
     const std::string text = shortened(outcome_text(outcome), 24);
     const double width = 18 + 7.2 * double(characters(text)) + 12;
-    if (x > kLeft && x + width > kRight) {
-      x = kLeft;
+    if (x > kSuccesLeft && x + width > kSuccesRight) {
+      x = kSuccesLeft;
       y += 18;
     }
     canvas.rectangle(x, y - 10, 13, 11, outcome_fill(outcome));

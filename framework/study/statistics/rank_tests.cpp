@@ -8,10 +8,6 @@
 namespace altiplan::study {
 namespace {
 
-bool has_nan(std::span<const double> sample) {
-  return std::any_of(sample.begin(), sample.end(), [](double x) { return std::isnan(x); });
-}
-
 std::vector<std::size_t> ascending(std::span<const double> sample) {
   std::vector<std::size_t> order(sample.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -38,6 +38,8 @@ double studentized_range_quantile(double p, int k);
 
 // ---- Summaries
 
+bool has_nan(std::span<const double> sample);
+
 /// Rounded to 12 significant digits, so that routes along the same points are equally long in
 /// whatever order their legs are summed.
 double in_12_digits(double value);

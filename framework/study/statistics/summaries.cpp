@@ -9,11 +9,11 @@
 #include "study/statistics/statistics.hpp"
 
 namespace altiplan::study {
-namespace {
-
 bool has_nan(std::span<const double> sample) {
   return std::any_of(sample.begin(), sample.end(), [](double x) { return std::isnan(x); });
 }
+
+namespace {
 
 /// a + t (b - a), monotone in t and exact at both ends, as NumPy's.
 double between(double a, double b, double t) {

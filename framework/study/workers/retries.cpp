@@ -19,8 +19,6 @@ constexpr int kFaultsInARow = 6;
 constexpr double kFirstPauseS =
     0.05;  ///< after a fault; each pause is twice as long as the previous one
 
-double now_s() { return double(steady_ns()) * 1e-9; }
-
 /// Also true for a damaged record, which another process may have caused.
 bool killed_from_outside(const Ended& ended) {
   constexpr std::array kFromOutside = {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGQUIT};
@@ -61,7 +59,7 @@ void Retries::fault(const std::string& what) {
   if (is_paused()) {
     return;
   }
-  paused_until_s_ = now_s() + std::ldexp(kFirstPauseS, faults_in_a_row_);
+  paused_until_s_ = steady_s() + std::ldexp(kFirstPauseS, faults_in_a_row_);
   if (++faults_in_a_row_ >= kFaultsInARow) {
     give_up(what);
   } else if (options_.say && std::exchange(said_, what) != what) {
@@ -74,5 +72,5 @@ bool Retries::is_last_try(std::size_t job) const {
   return tries != tries_.end() && tries->second == kTries - 1;
 }
 
-bool Retries::is_paused() const { return now_s() < paused_until_s_; }
+bool Retries::is_paused() const { return steady_s() < paused_until_s_; }
 }  // namespace altiplan::study

@@ -27,6 +27,8 @@ struct WorkerStatus {
 
 /// Nanoseconds of the steady clock, which parent and worker share.
 std::int64_t steady_ns();
+/// The same in seconds.
+inline double steady_s() { return double(steady_ns()) * 1e-9; }
 
 /// The task of a worker.
 struct WorkerTask {

@@ -20,13 +20,12 @@
 #include "study/workers/retries.hpp"
 #include "study/workers/signals.hpp"
 #include "study/workers/supervisor.hpp"
+#include "study/workers/worker.hpp"
 
 namespace altiplan::study {
 namespace {
 
 constexpr double kWatchEveryS = 0.02;
-
-double now_s() { return double(steady_ns()) * 1e-9; }
 
 /// The number of kills by the kernel for lack of memory, system-wide or in a group, since boot.
 long kernel_kills() {
@@ -81,7 +80,7 @@ class PoolRun {
       bool stop = false;
       while (!stop && !finished()) {
         start_workers();
-        stop = signals_.wait(next_look_s_ - now_s());
+        stop = signals_.wait(next_look_s_ - steady_s());
         reap();
         look();
         if (!retries_.failure().empty()) {
@@ -167,7 +166,7 @@ class PoolRun {
 
   /// Checks the resource use of all workers, and ends those beyond a limit.
   void look() {
-    if (now_s() < next_look_s_) {
+    if (steady_s() < next_look_s_) {
       return;
     }
     for (PoolWorker& worker : workers_) {
@@ -179,7 +178,7 @@ class PoolRun {
         end(worker, *beyond);
       }
     }
-    next_look_s_ = now_s() + kWatchEveryS;
+    next_look_s_ = steady_s() + kWatchEveryS;
   }
 
   /// Kills the worker and all its processes, because it exceeded a limit.
@@ -287,9 +286,9 @@ class PoolRun {
   }
 
   void keep_now_and_then() {
-    if (now_s() >= next_keep_s_) {
+    if (steady_s() >= next_keep_s_) {
       keep();
-      next_keep_s_ = now_s() + options_.keep_every_s;
+      next_keep_s_ = steady_s() + options_.keep_every_s;
     }
   }
 

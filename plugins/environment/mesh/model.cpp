@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 /// Maximum size of a triangle in a file, as text with long numbers.
 constexpr std::uintmax_t kBytesOfTriangle = 512;
-constexpr double kFarthest = 1e9;
+constexpr double kMaxCoordinate = 1e9;
 constexpr std::size_t kStlHeader = 80;
 constexpr std::size_t kStlTriangle = 50;
 
@@ -109,7 +109,7 @@ Model model_of(const aiScene& scene, const std::string& file) {
       const aiVector3D& v = mesh.mVertices[i];
       model.corners.emplace_back(double(v.x), double(v.y), double(v.z));
       const Vec3& corner = model.corners.back();
-      if (!is_finite(corner) || corner.cwiseAbs().maxCoeff() > kFarthest) {
+      if (!is_finite(corner) || corner.cwiseAbs().maxCoeff() > kMaxCoordinate) {
         refuse(file, "has a coordinate that is not a number of at most 1e+09, its corner " +
                          std::to_string(before + i + 1));
       }

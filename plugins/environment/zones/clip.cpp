@@ -21,11 +21,11 @@ namespace altiplan::zones {
 namespace {
 
 namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
-using Polygon = bg::model::polygon<Point, true, false>;  // clockwise, not closed
+using PlanePoint = bg::model::d2::point_xy<double>;
+using PlanePolygon = bg::model::polygon<PlanePoint, true, false>;  // clockwise, not closed
 
-Polygon to_boost(const Prism& prism) {
-  Polygon polygon;
+PlanePolygon to_boost(const Prism& prism) {
+  PlanePolygon polygon;
   for (const auto& p : prism.outline) {
     polygon.outer().emplace_back(p[0], p[1]);
   }
@@ -42,15 +42,16 @@ Polygon to_boost(const Prism& prism) {
 template <class Ring>
 kit::Ring from_boost(const Ring& ring) {
   kit::Ring result;
-  for (const Point& p : ring) {
+  for (const PlanePoint& p : ring) {
     result.push_back({p.x(), p.y()});
   }
   return kit::without_repeats(result);
 }
 
 /// Prisms over the polygons; false if one of them touches itself.
-bool add_prisms(const std::vector<Polygon>& polygons, const Prism& like, std::vector<Prism>& to) {
-  for (const Polygon& piece : polygons) {
+bool add_prisms(const std::vector<PlanePolygon>& polygons, const Prism& like,
+                std::vector<Prism>& to) {
+  for (const PlanePolygon& piece : polygons) {
     kit::Polygon polygon{from_boost(piece.outer()), {}};
     for (const auto& hole : piece.inners()) {
       polygon.holes.push_back(from_boost(hole));
@@ -77,8 +78,8 @@ bool is_inside(const Box& box, const Box& bounds) {
 namespace {
 
 /// Corners that rounding has put beyond the box.
-void keep_in(Polygon& polygon, const Box& box) {
-  bg::for_each_point(polygon, [&](Point& p) {
+void keep_in(PlanePolygon& polygon, const Box& box) {
+  bg::for_each_point(polygon, [&](PlanePoint& p) {
     p.x(std::clamp(p.x(), box.min.x(), box.max.x()));
     p.y(std::clamp(p.y(), box.min.y(), box.max.y()));
   });
@@ -95,16 +96,16 @@ Parts split(const Prism& prism, const Box& box) {
   }
   // Boost takes no infinite coordinates.
   const Box cut = box.intersected(area.grown(1));
-  const Polygon polygon = to_boost(prism);
-  Polygon rectangle;
-  bg::convert(bg::model::box<Point>({cut.min.x(), cut.min.y()}, {cut.max.x(), cut.max.y()}),
+  const PlanePolygon polygon = to_boost(prism);
+  PlanePolygon rectangle;
+  bg::convert(bg::model::box<PlanePoint>({cut.min.x(), cut.min.y()}, {cut.max.x(), cut.max.y()}),
               rectangle);
-  std::vector<Polygon> within;
-  std::vector<Polygon> beyond;
+  std::vector<PlanePolygon> within;
+  std::vector<PlanePolygon> beyond;
   bg::intersection(polygon, rectangle, within);
   bg::difference(polygon, rectangle, beyond);
   Parts parts;
-  for (Polygon& part : within) {
+  for (PlanePolygon& part : within) {
     keep_in(part, cut);
   }
   return add_prisms(within, prism, parts.within) && add_prisms(beyond, prism, parts.beyond)
@@ -140,11 +141,11 @@ std::vector<Shape> Clip::cut(const Shape& shape) {
     ++kept_;
     return {shape};
   }
-  std::vector<Polygon> pieces;
-  bg::intersection(
-      to_boost(*prism),
-      bg::model::box<Point>({bounds_.min.x(), bounds_.min.y()}, {bounds_.max.x(), bounds_.max.y()}),
-      pieces);
+  std::vector<PlanePolygon> pieces;
+  bg::intersection(to_boost(*prism),
+                   bg::model::box<PlanePoint>({bounds_.min.x(), bounds_.min.y()},
+                                              {bounds_.max.x(), bounds_.max.y()}),
+                   pieces);
   std::vector<Prism> parts;
   if (!add_prisms(pieces, *prism, parts)) {
     ++kept_;

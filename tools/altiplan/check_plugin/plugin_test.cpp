@@ -14,7 +14,6 @@ namespace {
 
 using conformance::Case;
 using conformance::Cases;
-using conformance::Finding;
 
 constexpr const char* kManifest = "Library: a manifest that matches this altiplan";
 constexpr const char* kLoads = "Library: loads, with all symbols and all listed plugins";

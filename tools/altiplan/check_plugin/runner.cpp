@@ -18,8 +18,6 @@
 namespace altiplan::cli {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr const char* kSame = "Process: equal requests give equal answers in two processes";
 
 /// The first difference between the answers of two processes; "" if they are equal.
@@ -129,29 +127,29 @@ class Runner {
 }  // namespace
 
 std::string outcome_text(const Outcome& outcome) {
-  Json findings = Json::array();
+  nlohmann::json findings = nlohmann::json::array();
   for (const conformance::Finding& finding : outcome.findings) {
     findings.push_back({finding.contract, finding.message});
   }
-  return Json{{"findings", findings},
-              {"skipped", outcome.skipped},
-              {"misfit", outcome.misfit},
-              {"answers", outcome.answers}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return nlohmann::json{{"findings", findings},
+                        {"skipped", outcome.skipped},
+                        {"misfit", outcome.misfit},
+                        {"answers", outcome.answers}}
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Outcome outcome_of(const std::string& text) {
   try {
-    const Json json = Json::parse(text);
+    const nlohmann::json json = nlohmann::json::parse(text);
     Outcome outcome;
-    for (const Json& finding : json.at("findings")) {
+    for (const nlohmann::json& finding : json.at("findings")) {
       outcome.findings.push_back({finding.at(0), finding.at(1)});
     }
     outcome.skipped = json.at("skipped");
     outcome.misfit = json.at("misfit");
     outcome.answers = json.at("answers");
     return outcome;
-  } catch (const Json::exception&) {
+  } catch (const nlohmann::json::exception&) {
     throw Error("overwrote its result");
   }
 }

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <tuple>
 
+#include "lanes.hpp"
 #include "part_legs.hpp"
 #include "roots.hpp"
 
 namespace altiplan::kit {
 namespace {
-
-constexpr double kCircle = 2 * kPi;
 
 /// Paths this much shorter than they must be, relatively, are long enough.
 constexpr double kRounding = 1e-12;

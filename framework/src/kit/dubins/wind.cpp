@@ -12,14 +12,13 @@
 
 #include <algorithm>
 
+#include "lanes.hpp"
 #include "roots.hpp"
 
 namespace altiplan::kit {
 namespace {
 
-constexpr double kCircle = 2 * kPi;
-
-double wrapped(double angle) {
+double turned_part(double angle) {
   const double rest = angle - kCircle * std::floor(angle / kCircle);
   return rest < kCircle - 1e-12 ? rest : 0;
 }
@@ -177,10 +176,10 @@ class WindSearch {
   DubinsPath triple_at(double s, bool right, int sign) const {
     const Moving& m = m_[right];
     const double angle = sign * base(m.squared(s));
-    const double t = wrapped(kPi / 2 + angle + std::atan2(m.y_at(s), m.x_at(s)));
+    const double t = turned_part(kPi / 2 + angle + std::atan2(m.y_at(s), m.x_at(s)));
     const double p = kPi + 2 * angle;
     const DubinsWord word = right ? DubinsWord::rlr : DubinsWord::lrl;
-    return {word, radius_, {t, p, wrapped(p - t + turn_[right])}};
+    return {word, radius_, {t, p, turned_part(p - t + turn_[right])}};
   }
 
   /// Takes the first path between two lengths between which the lead is monotonous.

@@ -12,9 +12,9 @@
 namespace altiplan::kit {
 namespace {
 
-using Node = pugi::xml_node;
+using XmlNode = pugi::xml_node;
 
-LimitText limit_at(const Node& volume, const char* key, const char* reference) {
+LimitText limit_at(const XmlNode& volume, const char* key, const char* reference) {
   const std::string text(text_of(volume, key));
   LimitText limit{{},
                   child(volume, key).attribute("uom").value(),
@@ -35,7 +35,7 @@ LimitText limit_at(const Node& volume, const char* key, const char* reference) {
   return limit;
 }
 
-std::optional<DailyHours::Edge> edge_at(const Node& sheet, const char* time, const char* event,
+std::optional<DailyHours::Edge> edge_at(const XmlNode& sheet, const char* time, const char* event,
                                         const char* offset) {
   const std::string_view name = text_of(sheet, event);
   if (!name.empty()) {
@@ -49,7 +49,7 @@ std::optional<DailyHours::Edge> edge_at(const Node& sheet, const char* time, con
 }
 
 /// None unless the sheet gives hours of days of the week, all through the year, in UTC.
-std::optional<DailyHours> hours_of(const Node& sheet) {
+std::optional<DailyHours> hours_of(const XmlNode& sheet) {
   const std::string_view day = text_of(sheet, "day");
   const auto days = day.empty() ? std::optional(127U) : day_bits(day);
   const std::string_view reference = text_of(sheet, "timeReference");
@@ -65,15 +65,15 @@ std::optional<DailyHours> hours_of(const Node& sheet) {
 }
 
 /// Hours of a zone's activations; empty: always active.
-std::vector<DailyHours> hours_of(const Node& slice, const std::string& zone, Doubts& doubts) {
+std::vector<DailyHours> hours_of(const XmlNode& slice, const std::string& zone, Doubts& doubts) {
   std::vector<DailyHours> hours;
-  for (const Node& activation : slice.children()) {
+  for (const XmlNode& activation : slice.children()) {
     if (local_name(activation) != "activation") {
       continue;
     }
-    std::vector<Node> sheets;
+    std::vector<XmlNode> sheets;
     find_all(activation, "Timesheet", sheets);
-    for (const Node& sheet : sheets) {
+    for (const XmlNode& sheet : sheets) {
       const auto found = hours_of(sheet);
       if (!found) {
         doubts.add(
@@ -84,7 +84,7 @@ std::vector<DailyHours> hours_of(const Node& slice, const std::string& zone, Dou
       hours.push_back(*found);
     }
     if (sheets.empty()) {
-      std::vector<Node> words;
+      std::vector<XmlNode> words;
       find_all(activation, "note", words);
       doubts.add(words.empty()
                      ? std::string("activation without hours, always active")
@@ -97,8 +97,8 @@ std::vector<DailyHours> hours_of(const Node& slice, const std::string& zone, Dou
   return hours;
 }
 
-AirspacePeriod validity_of(const Node& slice, const std::string& zone, Doubts& doubts) {
-  const Node period = child(child(slice, "validTime"), "TimePeriod");
+AirspacePeriod validity_of(const XmlNode& slice, const std::string& zone, Doubts& doubts) {
+  const XmlNode period = child(child(slice, "validTime"), "TimePeriod");
   AirspacePeriod result{period_start(std::string(text_of(period, "beginPosition")), zone, doubts),
                         period_end(std::string(text_of(period, "endPosition")), zone, doubts),
                         {}};
@@ -106,9 +106,9 @@ AirspacePeriod validity_of(const Node& slice, const std::string& zone, Doubts& d
   return result;
 }
 
-class Reader {
+class AixmReader {
  public:
-  Reader(const std::string& file, const std::string& text) : file_(file), text_(text) {
+  AixmReader(const std::string& file, const std::string& text) : file_(file), text_(text) {
     const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed) {
       throw Error(file + ":" + std::to_string(line_at(text, std::size_t(parsed.offset))) +
@@ -119,10 +119,10 @@ class Reader {
   }
 
   Airspace read() {
-    for (const Node& airspace : airspaces_) {
+    for (const XmlNode& airspace : airspaces_) {
       bool has_volume = false;
-      for (const Node& time_slice : airspace.children()) {
-        const Node slice = child(time_slice, "AirspaceTimeSlice");
+      for (const XmlNode& time_slice : airspace.children()) {
+        const XmlNode slice = child(time_slice, "AirspaceTimeSlice");
         if (local_name(time_slice) == "timeSlice" && slice) {
           has_volume |= read_slice(airspace, slice);
         }
@@ -137,7 +137,7 @@ class Reader {
   }
 
  private:
-  Error wrong(const Node& node, const std::string& why) const {
+  Error wrong(const XmlNode& node, const std::string& why) const {
     const std::ptrdiff_t offset = std::max<std::ptrdiff_t>(node.offset_debug(), 0);
     return Error(file_ + ":" + std::to_string(line_at(text_, std::size_t(offset))) + ": " +
                  printable(why));
@@ -145,7 +145,7 @@ class Reader {
 
   void check_depth() {
     struct Depth : pugi::xml_tree_walker {
-      bool for_each(Node&) override { return depth() <= kMaxXmlDepth; }
+      bool for_each(XmlNode&) override { return depth() <= kMaxXmlDepth; }
     } walker;
     if (!document_.traverse(walker)) {
       throw Error(file_ + ": elements are nested more than " + std::to_string(kMaxXmlDepth) +
@@ -154,19 +154,19 @@ class Reader {
   }
 
   void index() {
-    std::vector<Node> borders;
+    std::vector<XmlNode> borders;
     find_all(document_, "Airspace", airspaces_);
     find_all(document_, "GeoBorder", borders);
-    for (const Node& border : borders) {
+    for (const XmlNode& border : borders) {
       borders_[identifier(border)] = border;
     }
-    for (const Node& airspace : airspaces_) {
+    for (const XmlNode& airspace : airspaces_) {
       by_id_[identifier(airspace)] = airspace;
     }
   }
 
   /// False if the time slice has no volume.
-  bool read_slice(const Node& airspace, const Node& slice) {
+  bool read_slice(const XmlNode& airspace, const XmlNode& slice) {
     AirspaceZone zone;
     zone.id = printable(text_of(slice, "designator"));
     zone.name = printable(text_of(slice, "name"));
@@ -175,16 +175,16 @@ class Reader {
       zone.id = printable(identifier(airspace));
     }
     const std::string label = zone.label();
-    for (const Node& component : slice.children()) {
+    for (const XmlNode& component : slice.children()) {
       if (local_name(component) != "geometryComponent") {
         continue;
       }
-      const Node part = child(component, "AirspaceGeometryComponent");
+      const XmlNode part = child(component, "AirspaceGeometryComponent");
       if (text_of(part, "operation") == "SUBTR") {
         doubts_.add("volume that is subtracted, not opened", label);
         continue;
       }
-      const Node volume = child(child(part, "theAirspaceVolume"), "AirspaceVolume");
+      const XmlNode volume = child(child(part, "theAirspaceVolume"), "AirspaceVolume");
       if (volume) {
         read_volume(volume, zone);
       }
@@ -202,7 +202,7 @@ class Reader {
     return true;
   }
 
-  void read_volume(const Node& volume, AirspaceZone& zone) {
+  void read_volume(const XmlNode& volume, AirspaceZone& zone) {
     const std::string label = zone.label();
     const AirspaceLimit lower =
         lower_limit(limit_at(volume, "lowerLimit", "lowerLimitReference"), label, doubts_);
@@ -214,26 +214,27 @@ class Reader {
     }
   }
 
-  std::vector<Polygon> surface_of(const Node& volume, const std::string& label, int depth) {
+  std::vector<Polygon> surface_of(const XmlNode& volume, const std::string& label, int depth) {
     constexpr int kMaxDepth = 8;
-    if (const Node projection = child(volume, "horizontalProjection")) {
+    if (const XmlNode projection = child(volume, "horizontalProjection")) {
       try {
         return read_surface(projection, borders_, label, doubts_);
       } catch (const Error& error) {
         throw wrong(volume, "airspace '" + label + "': " + error.what());
       }
     }
-    const Node dependency = child(child(volume, "contributorAirspace"), "AirspaceVolumeDependency");
+    const XmlNode dependency =
+        child(child(volume, "contributorAirspace"), "AirspaceVolumeDependency");
     const auto found = by_id_.find(reference(child(dependency, "theAirspace")));
     if (found == by_id_.end() || depth >= kMaxDepth) {
       throw wrong(volume, "airspace '" + label +
                               "': expected a horizontalProjection, or a contributorAirspace that "
                               "the file has");
     }
-    std::vector<Node> parts;
+    std::vector<XmlNode> parts;
     find_all(found->second, "AirspaceVolume", parts);
     std::vector<Polygon> polygons;
-    for (const Node& part : parts) {
+    for (const XmlNode& part : parts) {
       std::vector<Polygon> more = surface_of(part, label, depth + 1);
       std::move(more.begin(), more.end(), std::back_inserter(polygons));
     }
@@ -243,9 +244,9 @@ class Reader {
   const std::string& file_;
   const std::string& text_;
   pugi::xml_document document_;
-  std::vector<Node> airspaces_;
-  std::map<std::string, Node> by_id_;
-  std::map<std::string, Node> borders_;
+  std::vector<XmlNode> airspaces_;
+  std::map<std::string, XmlNode> by_id_;
+  std::map<std::string, XmlNode> borders_;
   Doubts doubts_;
   Airspace airspace_{Airspace::Format::aixm, {}, {}};
 };
@@ -257,6 +258,6 @@ bool is_aixm(const std::string& text) {
 }
 
 Airspace read_aixm(const std::string& file, const std::string& text) {
-  return Reader(file, text).read();
+  return AixmReader(file, text).read();
 }
 }  // namespace altiplan::kit

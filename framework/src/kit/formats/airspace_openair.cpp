@@ -13,9 +13,9 @@
 namespace altiplan::kit {
 namespace {
 
-class Reader {
+class OpenAirReader {
  public:
-  Reader(const std::string& file, const std::string& text) : file_(file), text_(text) {}
+  OpenAirReader(const std::string& file, const std::string& text) : file_(file), text_(text) {}
 
   Airspace read() {
     std::size_t begin = 0;
@@ -286,6 +286,6 @@ bool is_openair(const std::string& text) {
 }
 
 Airspace read_openair(const std::string& file, const std::string& text) {
-  return Reader(file, text).read();
+  return OpenAirReader(file, text).read();
 }
 }  // namespace altiplan::kit

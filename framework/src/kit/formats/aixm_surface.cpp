@@ -9,7 +9,7 @@
 namespace altiplan::kit {
 namespace {
 
-using Node = pugi::xml_node;
+using XmlNode = pugi::xml_node;
 
 // Edges follow geodesics to this, unless they are longer than a country, metres.
 constexpr double kStraight = 0.5;
@@ -18,7 +18,7 @@ constexpr double kLongEdge = 2e6;
 constexpr std::size_t kMaxFlips = 10;
 
 /// The order of coordinates, by the nearest srsName.
-bool is_lat_first(Node node) {
+bool is_lat_first(XmlNode node) {
   for (; node; node = node.parent()) {
     const std::string_view name = node.attribute("srsName").value();
     if (name.empty()) {
@@ -55,7 +55,7 @@ void add_positions(std::string_view text, bool lat_first, std::vector<Point2>& t
   }
 }
 
-void add_points(const Node& node, std::vector<Point2>& to) {
+void add_points(const XmlNode& node, std::vector<Point2>& to) {
   const std::string_view name = local_name(node);
   if (name == "pos" || name == "posList") {
     add_positions(node.text().get(), is_lat_first(node), to);
@@ -64,12 +64,12 @@ void add_points(const Node& node, std::vector<Point2>& to) {
   if ((name == "pointProperty" || name == "pointRep") && !node.first_child()) {
     throw Error("expected a position within " + std::string(name) + ", found none");
   }
-  for (const Node& inner : node.children()) {
+  for (const XmlNode& inner : node.children()) {
     add_points(inner, to);
   }
 }
 
-std::vector<Point2> points_of(const Node& node) {
+std::vector<Point2> points_of(const XmlNode& node) {
   std::vector<Point2> points;
   add_points(node, points);
   if (points.empty()) {
@@ -78,8 +78,8 @@ std::vector<Point2> points_of(const Node& node) {
   return points;
 }
 
-double radius_of(const Node& segment) {
-  const Node radius = child(segment, "radius");
+double radius_of(const XmlNode& segment) {
+  const XmlNode radius = child(segment, "radius");
   const std::string unit = upper_case(radius.attribute("uom").value());
   const double value = number_of(trimmed(radius.text().get()));
   const double scale = unit == "[NMI_I]" || unit == "NM"  ? kNauticalMile
@@ -101,7 +101,7 @@ struct Piece {
   std::optional<std::pair<Point2, double>> circle;
 };
 
-OutlineArc arc_of(const Node& segment) {
+OutlineArc arc_of(const XmlNode& segment) {
   const std::vector<Point2> centre = points_of(segment);
   if (centre.size() != 1) {
     throw Error("expected one centre of an arc, found " + std::to_string(centre.size()));
@@ -132,7 +132,7 @@ void add_geodesic(const Point2& p, const Point2& q, Outline& to) {
   add_geodesic(middle, q, to);
 }
 
-void add_segment(const Node& segment, Piece& piece) {
+void add_segment(const XmlNode& segment, Piece& piece) {
   const std::string_view name = local_name(segment);
   if (name == "GeodesicString" || name == "Geodesic") {
     const std::vector<Point2> points = points_of(segment);
@@ -157,7 +157,7 @@ void add_segment(const Node& segment, Piece& piece) {
   }
 }
 
-Piece piece_of(const Node& member, const std::map<std::string, Node>& borders) {
+Piece piece_of(const XmlNode& member, const std::map<std::string, XmlNode>& borders) {
   Piece piece;
   if (const std::string id = reference(member); !id.empty()) {
     const auto found = borders.find(id);
@@ -167,10 +167,10 @@ Piece piece_of(const Node& member, const std::map<std::string, Node>& borders) {
     piece.border = points_of(found->second);
     return piece;
   }
-  const Node curve =
-      member.find_child([](const Node& node) { return node.type() == pugi::node_element; });
-  const Node segments = child(curve, "segments");
-  for (const Node& segment : segments.children()) {
+  const XmlNode curve =
+      member.find_child([](const XmlNode& node) { return node.type() == pugi::node_element; });
+  const XmlNode segments = child(curve, "segments");
+  for (const XmlNode& segment : segments.children()) {
     add_segment(segment, piece);
   }
   if (!segments) {
@@ -256,13 +256,13 @@ struct RingParts {
   std::optional<std::pair<Point2, double>> circle;
 };
 
-RingParts ring_parts(const Node& boundary, const std::map<std::string, Node>& borders) {
-  if (const Node linear = child(boundary, "LinearRing")) {
+RingParts ring_parts(const XmlNode& boundary, const std::map<std::string, XmlNode>& borders) {
+  if (const XmlNode linear = child(boundary, "LinearRing")) {
     const std::vector<Point2> points = points_of(linear);
     return {{{points.begin(), points.end()}}, {}};
   }
   std::vector<Piece> pieces;
-  for (const Node& member : child(boundary, "Ring").children()) {
+  for (const XmlNode& member : child(boundary, "Ring").children()) {
     if (local_name(member) == "curveMember") {
       pieces.push_back(piece_of(member, borders));
     }
@@ -296,10 +296,10 @@ std::vector<Polygon> covered(const RingParts& parts, const std::string& zone, Do
   return polygons;
 }
 
-void read_patch(const Node& patch, const std::map<std::string, Node>& borders,
+void read_patch(const XmlNode& patch, const std::map<std::string, XmlNode>& borders,
                 const std::string& zone, Doubts& doubts, std::vector<Polygon>& to) {
   std::vector<Ring> holes;
-  for (const Node& node : patch.children()) {
+  for (const XmlNode& node : patch.children()) {
     if (local_name(node) != "interior") {
       continue;
     }
@@ -319,8 +319,8 @@ void read_patch(const Node& patch, const std::map<std::string, Node>& borders,
 }
 }  // namespace
 
-void find_all(const Node& node, std::string_view name, std::vector<Node>& to) {
-  for (const Node& inner : node.children()) {
+void find_all(const XmlNode& node, std::string_view name, std::vector<XmlNode>& to) {
+  for (const XmlNode& inner : node.children()) {
     if (local_name(inner) == name) {
       to.push_back(inner);
     } else {
@@ -329,12 +329,12 @@ void find_all(const Node& node, std::string_view name, std::vector<Node>& to) {
   }
 }
 
-std::string identifier(const Node& feature) {
+std::string identifier(const XmlNode& feature) {
   const std::string_view text = text_of(feature, "identifier");
   return std::string(text.starts_with("urn:uuid:") ? text.substr(9) : text);
 }
 
-std::string reference(const Node& node) {
+std::string reference(const XmlNode& node) {
   const pugi::xml_attribute href = node.find_attribute([](const pugi::xml_attribute& attribute) {
     return std::string_view(attribute.name()).ends_with("href");
   });
@@ -347,17 +347,17 @@ std::string reference(const Node& node) {
   return std::string(text);
 }
 
-std::vector<Polygon> read_surface(const Node& projection,
-                                  const std::map<std::string, Node>& borders,
+std::vector<Polygon> read_surface(const XmlNode& projection,
+                                  const std::map<std::string, XmlNode>& borders,
                                   const std::string& zone, Doubts& doubts) {
-  std::vector<Node> patches;
+  std::vector<XmlNode> patches;
   find_all(projection, "PolygonPatch", patches);
   find_all(projection, "Polygon", patches);
   if (patches.empty()) {
     throw Error("expected a PolygonPatch within horizontalProjection, found none");
   }
   std::vector<Polygon> polygons;
-  for (const Node& patch : patches) {
+  for (const XmlNode& patch : patches) {
     read_patch(patch, borders, zone, doubts, polygons);
   }
   return polygons;

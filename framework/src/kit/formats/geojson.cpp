@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string text_of(const Json& value) {
+std::string property_text(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -85,7 +85,7 @@ std::string id_of(const Json& feature, std::size_t n) {
     const auto name = feature["properties"].find("name");
     id = name == feature["properties"].end() ? nullptr : &*name;
   }
-  const std::string text = id == nullptr || id->is_null() ? "" : text_of(*id);
+  const std::string text = id == nullptr || id->is_null() ? "" : property_text(*id);
   return text.empty() ? std::to_string(n) : text;
 }
 
@@ -136,7 +136,7 @@ bool read_feature(const Json& feature, const std::string& id, GeoJson& to) {
 
 std::string GeoFeature::text(const std::string& property) const {
   const auto found = properties.find(property);
-  return found == properties.end() ? "" : text_of(Json::parse(found->second));
+  return found == properties.end() ? "" : property_text(Json::parse(found->second));
 }
 
 std::optional<double> GeoFeature::metres(const std::string& property) const {
@@ -181,7 +181,7 @@ void expect_properties(const std::string& file, const GeoJson& json,
 GeoJson read_geojson(const std::string& file) {
   const Json document = parse_json(file, read_file(file));
   const std::string type = document.is_object() && document.contains("type")
-                               ? text_of(document["type"])
+                               ? property_text(document["type"])
                                : short_text(document);
   Json::array_t list;
   if (type == "FeatureCollection" && document.contains("features") &&

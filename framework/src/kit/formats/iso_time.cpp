@@ -10,9 +10,9 @@ namespace altiplan::kit {
 namespace {
 
 /// Parses a text from the front.
-class Reader {
+class TimeReader {
  public:
-  explicit Reader(std::string_view text) : text_(text) {}
+  explicit TimeReader(std::string_view text) : text_(text) {}
 
   bool digits(std::size_t count, int& value) {
     if (text_.size() < count) {
@@ -53,7 +53,7 @@ class Reader {
 }  // namespace
 
 std::optional<double> parse_iso_time(std::string_view text) {
-  Reader read(text);
+  TimeReader read(text);
   int year = 0;
   int month = 0;
   int day = 0;

@@ -6,8 +6,8 @@
 namespace altiplan::kit {
 namespace {
 
-constexpr int kHeadings = 16;     // tried where none is given
-constexpr int kLoiterPoses = 64;  // places where a loiter circle may be left or joined
+constexpr int kRuleHeadings = 16;  // tried where none is given
+constexpr int kLoiterPoses = 64;   // places where a loiter circle may be left or joined
 }  // namespace
 
 PathRules::PathRules(const Request& request, double turn_radius)
@@ -18,11 +18,11 @@ PathRules::PathRules(const Request& request, double turn_radius)
                   request.wind.layers.size() > 1) {}
 
 std::vector<Pose> PathRules::starts() const {
-  return request_.start_poses(request_.start.loiter ? kLoiterPoses : kHeadings);
+  return request_.start_poses(request_.start.loiter ? kLoiterPoses : kRuleHeadings);
 }
 
 std::vector<Pose> PathRules::goals() const {
-  return request_.goal_poses(request_.goal.loiter ? kLoiterPoses : kHeadings);
+  return request_.goal_poses(request_.goal.loiter ? kLoiterPoses : kRuleHeadings);
 }
 
 std::optional<PathRules::Arrival> PathRules::arrival(std::optional<Approach> before,
