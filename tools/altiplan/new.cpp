@@ -68,6 +68,11 @@ std::string offered_by(const std::string& name) {
       }
     }
   }
+  for (const std::string_view kind : kKinds) {
+    if (contains(registry.names(kind), name)) {
+      return "a " + std::string(kind) + " of altiplan, not built yet";
+    }
+  }
   for (const PluginEntry& entry : host::built_in_environments()) {
     if (entry.name == name) {
       return "a built-in environment";

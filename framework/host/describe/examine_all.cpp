@@ -12,7 +12,8 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 std::vector<Library> examine_all(Registry& registry) {
-  std::vector<Library> libraries = registry.libraries();
+  registry.build_all();
+  std::vector<Library> libraries(registry.libraries().begin(), registry.libraries().end());
   for (Library& library : libraries) {
     if (library.is_machine_fault) {
       throw MachineFault(library.file.string() + ": " + library.refused);

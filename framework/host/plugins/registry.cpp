@@ -51,7 +51,7 @@ std::string with_article(std::string_view kind) {
 }
 
 /// Refuses all libraries that offer the same kind and name.
-void refuse_conflicts(std::vector<Library>& libraries) {
+void refuse_conflicts(std::deque<Library>& libraries) {
   std::vector<std::string> reasons(libraries.size());
   for (std::size_t i = 0; i < libraries.size(); ++i) {
     for (std::size_t j = 0; j < libraries.size(); ++j) {
@@ -72,7 +72,10 @@ void refuse_conflicts(std::vector<Library>& libraries) {
   }
   for (std::size_t i = 0; i < libraries.size(); ++i) {
     std::string& refused = libraries[i].refused;
-    refused += (refused.empty() || reasons[i].empty() ? "" : "; ") + reasons[i];
+    if (refused.find(reasons[i]) != std::string::npos) {
+      continue;  // known since other libraries were added
+    }
+    refused += (refused.empty() ? "" : "; ") + reasons[i];
   }
 }
 
@@ -109,6 +112,7 @@ FileStamp::FileStamp(const fs::path& file) {
 
 Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders)) {
   std::set<fs::path> seen;
+  std::vector<fs::path> files;
   for (const fs::path& folder : folders_) {
     for (const fs::path& file : libraries_in(folder)) {
       std::error_code error;
@@ -116,21 +120,36 @@ Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders))
       if (is_machine_fault(error.value())) {
         throw MachineFault(unreadable(file, error.value()));
       }
-      if (!seen.insert(error ? file : real).second) {
-        continue;
+      if (seen.insert(error ? file : real).second) {
+        files.push_back(file);
       }
-      Library library = examine_library(file);
-      const auto first =
-          std::find_if(libraries_.begin(), libraries_.end(),
-                       [&](const Library& other) { return same_build(other, library); });
-      if (first != libraries_.end()) {
-        copies_.push_back({file, first->file});
-      } else {
-        libraries_.push_back(std::move(library));
-      }
+    }
+    if (seen.insert(folder / "buildable.txt").second) {
+      unbuilt_.emplace_back(folder);
+    }
+  }
+  add(files);
+}
+
+void Registry::add(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    Library library = examine_library(file);
+    const auto first =
+        std::find_if(libraries_.begin(), libraries_.end(),
+                     [&](const Library& other) { return same_build(other, library); });
+    if (first != libraries_.end()) {
+      copies_.push_back({file, first->file});
+    } else {
+      libraries_.push_back(std::move(library));
     }
   }
   refuse_conflicts(libraries_);
+}
+
+void Registry::build_all() {
+  for (Unbuilt& unbuilt : unbuilt_) {
+    add(unbuilt.build_all());
+  }
 }
 
 std::vector<fs::path> Registry::search_path(const std::vector<fs::path>& extra) {
@@ -165,10 +184,23 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
       }
     }
   }
+  for (const Unbuilt& unbuilt : unbuilt_) {
+    const std::vector<std::string> more = unbuilt.names(kind);
+    names.insert(more.begin(), more.end());
+  }
   return {names.begin(), names.end()};
 }
 
-const Library* Registry::offering(std::string_view kind, std::string_view name) const {
+const Library* Registry::offering(std::string_view kind, std::string_view name) {
+  const Library* library = find(kind, name);
+  for (std::size_t i = 0; i < unbuilt_.size() && library == nullptr; ++i) {
+    add(unbuilt_[i].build(kind, name));
+    library = find(kind, name);
+  }
+  return library;
+}
+
+const Library* Registry::find(std::string_view kind, std::string_view name) const {
   const auto refuse = [&](const Library& library) {
     const std::string why = "the library of the " + std::string(kind) + " '" + std::string(name) +
                             "' is refused: " + library.file.string() + ": " + library.refused;

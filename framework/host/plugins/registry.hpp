@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "altiplan/smoother.hpp"
 #include "altiplan/tuner.hpp"
 #include "host/base/plugin_file.hpp"
+#include "host/plugins/unbuilt.hpp"
 
 namespace altiplan::host {
 
@@ -53,15 +55,19 @@ class Registry {
       const std::vector<std::filesystem::path>& extra);
 
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
-  const std::vector<Library>& libraries() const { return libraries_; }
+  const std::deque<Library>& libraries() const { return libraries_; }
   /// Files that were skipped as copies of a library found before.
   const std::vector<LibraryCopy>& copies() const { return copies_; }
-  /// Names offered for a kind, sorted.
+  /// Has what a build tree can make and has not made yet built, for commands that look at all
+  /// plugins; nothing elsewhere. Throws Error if the build fails.
+  void build_all();
+  /// Names offered for a kind, sorted; those that a build tree can make too.
   std::vector<std::string> names(std::string_view kind) const;
   /// The library that offers the plugin; null if none does. Throws PluginError if a library that
   /// offers the name, or is called libaltiplan_KIND_NAME.so, is refused. Libraries that offer the
-  /// same name (planners and local planners share one namespace) are all refused.
-  const Library* offering(std::string_view kind, std::string_view name) const;
+  /// same name (planners and local planners share one namespace) are all refused. A build tree
+  /// builds the plugin that it has not built yet.
+  const Library* offering(std::string_view kind, std::string_view name);
 
   /// Loads the library at the first call, in a child process before this one. Throws PluginError if
   /// the library cannot be used, Error if no library provides the name (with the folders searched
@@ -72,11 +78,14 @@ class Registry {
   std::vector<std::filesystem::path> changed();
 
  private:
+  const Library* find(std::string_view kind, std::string_view name) const;
+  void add(const std::vector<std::filesystem::path>& files);
   std::string not_offered(std::string_view kind, std::string_view name) const;
 
   std::vector<std::filesystem::path> folders_;
-  std::vector<Library> libraries_;
+  std::deque<Library> libraries_;  ///< each stays where it is when others are added
   std::vector<LibraryCopy> copies_;
+  std::vector<Unbuilt> unbuilt_;
   std::mutex mutex_;  ///< of used_
   std::map<const Library*, FileStamp> used_;
 };

@@ -53,7 +53,7 @@ void ParameterSet::inherit() {
   }
 }
 
-std::string ParameterSet::missing_layer(const host::Registry& registry) const {
+std::string ParameterSet::missing_layer(host::Registry& registry) const {
   for (const Value& layer : before) {
     if (registry.offering("environment", layer.entries.at(0).key) == nullptr) {
       return layer.entries[0].key;

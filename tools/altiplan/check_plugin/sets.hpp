@@ -33,7 +33,7 @@ struct ParameterSet {
   /// Adds to `tighter` the parameters of `with` that it lacks.
   void inherit();
   /// The first layer of `before` that no library provides; "" if all are found.
-  std::string missing_layer(const host::Registry& registry) const;
+  std::string missing_layer(host::Registry& registry) const;
   /// The setup refers to this set's values. The layers before it come from the registry's
   /// libraries; throws Error if one cannot be created.
   conformance::Setup setup(host::Registry& registry) const;
