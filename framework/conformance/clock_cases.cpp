@@ -50,11 +50,11 @@ class FairClock {
 /// ever adds time, as memory and caches are shared.
 template <class Measure>
 double min_of_three(const Measure& measure) {
-  double least = measure();
-  for (int again = 0; again < 2 && least > kMaxLateMs; ++again) {
-    least = std::min(least, measure());
+  double min_late_ms = measure();
+  for (int again = 0; again < 2 && min_late_ms > kMaxLateMs; ++again) {
+    min_late_ms = std::min(min_late_ms, measure());
   }
-  return least;
+  return min_late_ms;
 }
 
 /// A million obstacles, and an unreachable goal.
@@ -71,18 +71,18 @@ void deadlines(const PlannerBench& bench, Report& report) {
   for (const double allowed : {0.0, 1.0, 3.0, 10.0, 30.0, 100.0}) {
     for (int n = 0; n < 5; ++n) {
       scene.request.random = RandomStream(bench.options.seed).sub("clock", std::uint64_t(n));
-      std::string said;
+      std::string result_text;
       const double overrun = min_of_three([&] {
         const FairClock clock;
         scene.request.budget.deadline = after(allowed);
         const PlanResult result = planner->plan(scene.request);
         const double took = clock.ms();
-        said = text(result);
+        result_text = text(result);
         return took - allowed;
       });
       report.expect(overrun <= kMaxLateMs, kDeadline, [&] {
         return scene.name + ": of " + text(allowed) + " ms the planner took " +
-               text(allowed + overrun) + " ms; it returned " + said;
+               text(allowed + overrun) + " ms; it returned " + result_text;
       });
     }
   }

@@ -382,14 +382,12 @@ void odd_questions(const ConstraintBench& bench, Report&) {
 Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint>& tighter,
                        const Options& options) {
   const ConstraintBench bench{make, tighter, options};
-  const auto made = [&](const char* name, void (*body)(const ConstraintBench&, Report&)) {
-    return make_case(name, kConstraintPure, [bench, body](Report& report) { body(bench, report); });
-  };
-  return {made("answers_do_not_depend_on_history_or_threads", pure),
-          made("tighten_never_loosens", tightens),
-          made("legs_and_routes", legs_and_routes),
-          made("legs_through_refused_ones", legs_through_refused_ones),
-          made("agrees_with_the_judge", agrees_with_the_judge),
-          made("odd_questions", odd_questions)};
+  return cases_on(bench, kConstraintPure,
+                  {{"answers_do_not_depend_on_history_or_threads", pure},
+                   {"tighten_never_loosens", tightens},
+                   {"legs_and_routes", legs_and_routes},
+                   {"legs_through_refused_ones", legs_through_refused_ones},
+                   {"agrees_with_the_judge", agrees_with_the_judge},
+                   {"odd_questions", odd_questions}});
 }
 }  // namespace altiplan::conformance

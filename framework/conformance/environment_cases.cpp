@@ -113,10 +113,10 @@ void blocked_legs(const EnvironmentBench& bench, Report& report) {
     const Vec3& b = leg.b;
     const double r = leg.r;
     const bool blocked = layer.blocked(a, b, r);
-    double least = kInfinity;
+    double min_clearance = kInfinity;
     for (int k = 0; k <= kSamples; ++k) {
       const Vec3 on = k == kSamples ? b : Vec3(a + (b - a) * k / kSamples);
-      least = std::min(least, layer.clearance(on));
+      min_clearance = std::min(min_clearance, layer.clearance(on));
       const Vec3 beside = probe.around(on, r);
       const bool solid_near =
           probe.inside(on) || (probe.inside(beside) && (beside - on).norm() < r - kDeep);
@@ -130,10 +130,11 @@ void blocked_legs(const EnvironmentBench& bench, Report& report) {
     }
     const double gap = (b - a).norm() / kSamples / 2;  // no point is farther from a sample
     const double rounding = 1e-9 * (1 + a.cwiseAbs().maxCoeff());
-    const double clear = std::min(least - gap - layer.over_approximation() - kDeep - rounding, 1e6);
+    const double clear =
+        std::min(min_clearance - gap - layer.over_approximation() - kDeep - rounding, 1e6);
     report.expect(!(clear > 0) || !layer.blocked(a, b, clear), kEnvironmentBlocked, [&] {
       return text(a) + " to " + text(b) + " is blocked for r " + text(clear) +
-             ", and all of it is at least " + text(least - gap) +
+             ", and all of it is at least " + text(min_clearance - gap) +
              " m clear, with an over-approximation of " + text(layer.over_approximation());
     });
   }
@@ -187,33 +188,33 @@ void near_by(const EnvironmentBench& bench, Report& report) {
     const Vec3& p = leg.a;
     const double r = leg.r;
     double nearest = kInfinity;
-    const auto told = [&](const std::string& what) {
+    const auto report_text = [&](const std::string& what) {
       return [&, what] { return "near(" + text(p) + ", " + text(r) + "): " + what; };
     };
     layer.near(p, r, [&](const Nearby& nearby) {
       nearest = std::min(nearest, nearby.distance);
       report.expect(nearby.distance <= r + kDeep, kEnvironmentNear,
-                    told("an obstacle is " + text(nearby.distance) + " m away"));
+                    report_text("an obstacle is " + text(nearby.distance) + " m away"));
       report.expect(std::abs(nearby.normal.norm() - 1) < 1e-6, kEnvironmentNear,
-                    told("the normal " + text(nearby.normal) + " is not of length 1"));
+                    report_text("the normal " + text(nearby.normal) + " is not of length 1"));
       // A layer's distances may be lower bounds: its point is then no nearer than that.
       report.expect(is_finite(nearby.point) &&
                         (p - nearby.point).norm() >=
                             std::abs(nearby.distance) - 1e-2 - 1e-3 * std::abs(nearby.distance),
                     kEnvironmentNear,
-                    told("the point " + text(nearby.point) + " is nearer than the distance " +
-                         text(nearby.distance)));
+                    report_text("the point " + text(nearby.point) +
+                                " is nearer than the distance " + text(nearby.distance)));
     });
     const double clearance = layer.clearance(p);
-    report.expect(
-        clearance <= nearest + kDeep + 1e-9 * std::abs(nearest), kEnvironmentNear,
-        told("an obstacle is " + text(nearest) + " m away, clearance is " + text(clearance)));
+    report.expect(clearance <= nearest + kDeep + 1e-9 * std::abs(nearest), kEnvironmentNear,
+                  report_text("an obstacle is " + text(nearest) + " m away, clearance is " +
+                              text(clearance)));
     const Vec3 beside = probe.around(p, r);
     report.expect(!probe.inside(beside) ||
                       nearest <= (beside - p).norm() + layer.over_approximation() + kDeep,
                   kEnvironmentNear,
-                  told("nothing is reported within " + text((beside - p).norm()) + " m, and " +
-                       text(beside) + " lies inside the layer"));
+                  report_text("nothing is reported within " + text((beside - p).norm()) +
+                              " m, and " + text(beside) + " lies inside the layer"));
   }
 }
 
@@ -343,20 +344,17 @@ void kin(const EnvironmentBench& bench, Report& report) {
 Cases environment_cases(const EnvironmentFactory& make, const Options& options,
                         const std::shared_ptr<const World>& before) {
   const EnvironmentBench bench{make, options, before};
-  const auto made = [&](const char* name, void (*body)(const EnvironmentBench&, Report&)) {
-    return make_case(name, kEnvironmentPure,
-                     [bench, body](Report& report) { body(bench, report); });
-  };
-  Cases all{made("answers_do_not_depend_on_history_or_threads", pure),
-            made("clearance_is_lipschitz", clearances),
-            made("blocked_agrees_with_clearance", blocked_legs),
-            made("blocked_just_so", blocked_just_so),
-            made("blocked_is_symmetric_and_monotone", symmetric_and_monotone),
-            made("near_agrees_with_clearance", near_by),
-            made("bounds_hold_everything", bounds_hold),
-            made("bounds_hold_what_is_seen_from_outside", bounds_from_outside),
-            made("odd_places_do_no_harm", odd_places),
-            made("kin", kin)};
+  Cases all = cases_on(bench, kEnvironmentPure,
+                       {{"answers_do_not_depend_on_history_or_threads", pure},
+                        {"clearance_is_lipschitz", clearances},
+                        {"blocked_agrees_with_clearance", blocked_legs},
+                        {"blocked_just_so", blocked_just_so},
+                        {"blocked_is_symmetric_and_monotone", symmetric_and_monotone},
+                        {"near_agrees_with_clearance", near_by},
+                        {"bounds_hold_everything", bounds_hold},
+                        {"bounds_hold_what_is_seen_from_outside", bounds_from_outside},
+                        {"odd_places_do_no_harm", odd_places},
+                        {"kin", kin}});
   for (const auto& more : {environment_ground_cases(bench), environment_grid_cases(bench),
                            environment_body_cases(bench)}) {
     all.insert(all.end(), more.begin(), more.end());

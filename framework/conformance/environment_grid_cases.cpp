@@ -113,10 +113,8 @@ void drawn_over(const EnvironmentBench& bench, Report& report) {
 }  // namespace
 
 Cases environment_grid_cases(const EnvironmentBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const EnvironmentBench&, Report&)) {
-    return make_case(name, kEnvironmentPure,
-                     [bench, body](Report& report) { body(bench, report); });
-  };
-  return {made("rasterize_leaves_nothing_out", rasters), made("rasterize_draws_over", drawn_over)};
+  return cases_on(
+      bench, kEnvironmentPure,
+      {{"rasterize_leaves_nothing_out", rasters}, {"rasterize_draws_over", drawn_over}});
 }
 }  // namespace altiplan::conformance

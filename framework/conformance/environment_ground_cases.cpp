@@ -63,16 +63,16 @@ void legs(const EnvironmentBench& bench, Report& report) {
     const Probe::AskedLeg leg = probe.leg();
     const Vec3& a = leg.a;
     const Vec3& b = leg.b;
-    double least = kInfinity;
-    double most = -kInfinity;
+    double min_height = kInfinity;
+    double max_height = -kInfinity;
     bool whole = true;
     for (int k = 0; k <= kSamples; ++k) {
       const Vec3 p = k == kSamples ? b : Vec3(a + (b - a) * k / kSamples);
       const auto height = ground->height(p.x(), p.y());
       whole = whole && height;
       if (height) {
-        least = std::min(least, p.z() - *height);
-        most = std::max(most, p.z() - *height);
+        min_height = std::min(min_height, p.z() - *height);
+        max_height = std::max(max_height, p.z() - *height);
       }
     }
     const double gap = ground->gap(a, b);
@@ -91,15 +91,15 @@ void legs(const EnvironmentBench& bench, Report& report) {
     const double steepest = ground->slope(leg_box(a, b));
     const double step = (b - a).norm() / kSamples;
     const double between = (1 + steepest) * step + kLengthTolerance;
-    report.expect(gap <= least + kLengthTolerance && gap >= least - between, kEnvironmentGround,
-                  [&] {
+    report.expect(gap <= min_height + kLengthTolerance && gap >= min_height - between,
+                  kEnvironmentGround, [&] {
                     return text(leg) + ": gap is " + text(gap) + ", the samples' minimum " +
-                           text(least) + ", the ground's slope " + text(steepest);
+                           text(min_height) + ", the ground's slope " + text(steepest);
                   });
-    report.expect(gap_max >= most - kLengthTolerance && gap_max <= most + between,
+    report.expect(gap_max >= max_height - kLengthTolerance && gap_max <= max_height + between,
                   kEnvironmentGround, [&] {
                     return text(leg) + ": gap_max is " + text(gap_max) + ", the samples' maximum " +
-                           text(most) + ", the ground's slope " + text(steepest);
+                           text(max_height) + ", the ground's slope " + text(steepest);
                   });
     const double enough = gap + probe.random().uniform(-1, 1) * (1 + std::abs(gap));
     const double shown = ground->gap(a, b, enough);
@@ -177,19 +177,19 @@ void steepest_slopes(const EnvironmentBench& bench, Report& report) {
   };
   for (int n = 0; n < 2 * bench.options.rounds && ground != nullptr; ++n) {
     Vec3 best = probe.random().in(probe.volume());
-    double most = slope(best.x(), best.y());
+    double max_slope = slope(best.x(), best.y());
     for (int k = 0; k < 200; ++k) {
       const Vec3 next = probe.around(best, probe.size() * std::pow(10, -0.02 * k));
       const double there = slope(next.x(), next.y());
-      if (there > most) {
+      if (there > max_slope) {
         best = next;
-        most = there;
+        max_slope = there;
       }
     }
     const Box box{best - Vec3::Constant(2 * apart), best + Vec3::Constant(2 * apart)};
-    report.expect(most <= ground->slope(box) * (1 + 1e-6) + kLengthTolerance / apart,
+    report.expect(max_slope <= ground->slope(box) * (1 + 1e-6) + kLengthTolerance / apart,
                   kEnvironmentGround, [&] {
-                    return "at " + text(best) + " the ground's slope is " + text(most) +
+                    return "at " + text(best) + " the ground's slope is " + text(max_slope) +
                            ", slope is " + text(ground->slope(box));
                   });
   }
@@ -197,12 +197,11 @@ void steepest_slopes(const EnvironmentBench& bench, Report& report) {
 }  // namespace
 
 Cases environment_ground_cases(const EnvironmentBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const EnvironmentBench&, Report&)) {
-    return make_case(name, kEnvironmentPure,
-                     [bench, body](Report& report) { body(bench, report); });
-  };
-  return {made("ground_at_points", points), made("ground_along_legs", legs),
-          made("ground_distances", distances), made("ground_slopes", slopes),
-          made("steepest_slopes", steepest_slopes)};
+  return cases_on(bench, kEnvironmentPure,
+                  {{"ground_at_points", points},
+                   {"ground_along_legs", legs},
+                   {"ground_distances", distances},
+                   {"ground_slopes", slopes},
+                   {"steepest_slopes", steepest_slopes}});
 }
 }  // namespace altiplan::conformance

@@ -20,11 +20,11 @@ Box Balls::do_bounds() const {
 }
 
 double Balls::do_clearance(const Vec3& p) const {
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (const Sphere& ball : balls_) {
-    least = std::min(least, (p - ball.centre).norm() - ball.radius);
+    min_distance = std::min(min_distance, (p - ball.centre).norm() - ball.radius);
   }
-  return least;
+  return min_distance;
 }
 
 bool Balls::do_blocked(const Vec3& a, const Vec3& b, double r) const {
@@ -110,25 +110,25 @@ double Ridge::do_clearance(const Vec3& p) const {
 }
 
 bool Ridge::do_blocked(const Vec3& a, const Vec3& b, double r) const {
-  double least = std::min(do_clearance(a), do_clearance(b));
+  double min_clearance = std::min(do_clearance(a), do_clearance(b));
   const double t = a.x() == b.x() ? -1 : (x_ - a.x()) / (b.x() - a.x());
   if (t > 0 && t < 1) {
     const double over = a.z() + t * (b.z() - a.z()) - top_;  // of the leg over the crest
     const Vec3 flat_a(a.x(), 0, a.z());
     const Vec3 flat_b(b.x(), 0, b.z());
     const double crest = point_leg_distance({x_, 0, top_}, flat_a, flat_b);
-    least = std::min(least, over < 0 ? over : crest);
+    min_clearance = std::min(min_clearance, over < 0 ? over : crest);
   }
-  return least < r - kLengthTolerance;
+  return min_clearance < r - kLengthTolerance;
 }
 
 double Ridge::do_gap(const Vec3& a, const Vec3& b, double) const {
-  double least = std::min(a.z() - height_at(a.x()), b.z() - height_at(b.x()));
+  double min_gap = std::min(a.z() - height_at(a.x()), b.z() - height_at(b.x()));
   const double t = a.x() == b.x() ? -1 : (x_ - a.x()) / (b.x() - a.x());
   if (t > 0 && t < 1) {
-    least = std::min(least, a.z() + t * (b.z() - a.z()) - top_);
+    min_gap = std::min(min_gap, a.z() + t * (b.z() - a.z()) - top_);
   }
-  return least;
+  return min_gap;
 }
 
 double Ridge::do_gap_max(const Vec3& a, const Vec3& b) const {

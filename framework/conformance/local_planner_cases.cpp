@@ -224,18 +224,17 @@ void no_allocation(const Bench& bench, Report& report) {
 
 Cases local_planner_cases(const Factory<LocalPlanner>& make, const Options& options) {
   const Bench bench{make, options};
-  const auto made = [&](const char* name, void (*body)(const Bench&, Report&)) {
-    return make_case(name, kNoThrow, [bench, body](Report& report) { body(bench, report); });
-  };
-  Cases all{made("arrives_in_an_open_world", open_world),
-            made("flies_among_balls", among_balls),
-            made("a_goal_out_of_reach_is_not_reached", goal_out_of_reach),
-            made("continues_where_it_is_put", put_elsewhere),
-            made("takes_a_world_that_changes", world_changes),
-            made("reach_holds", reach_holds),
-            made("equal_observations_give_equal_steps", equal_flights)};
+  Cases all = cases_on(bench, kNoThrow,
+                       {{"arrives_in_an_open_world", open_world},
+                        {"flies_among_balls", among_balls},
+                        {"a_goal_out_of_reach_is_not_reached", goal_out_of_reach},
+                        {"continues_where_it_is_put", put_elsewhere},
+                        {"takes_a_world_that_changes", world_changes},
+                        {"reach_holds", reach_holds},
+                        {"equal_observations_give_equal_steps", equal_flights}});
   if (options.allocations) {
-    all.push_back(made("no_allocation_in_a_step", no_allocation));
+    all.push_back(make_case("no_allocation_in_a_step", kNoThrow,
+                            [bench](Report& report) { no_allocation(bench, report); }));
   }
   return all;
 }

@@ -74,13 +74,13 @@ void judge(Report& report, const PilotStep& step, const Observation& seen, const
            text(seen.max_dt_s) + " s";
   });
   const double way = (step.next.position - seen.state.position).norm();
-  const double most = top_speed(request.vehicle) * dt;
+  const double max_way = top_speed(request.vehicle) * dt;
   // A pilot that continues from its own last answer appears to leap from its new position.
-  const bool leaps = way > 3 * most + kLengthTolerance;
+  const bool leaps = way > 3 * max_way + kLengthTolerance;
   report.expect(
-      way <= most * (1 + 1e-9) + kLengthTolerance, leaps ? kContinues : kTimeAndSpeed, [&] {
+      way <= max_way * (1 + 1e-9) + kLengthTolerance, leaps ? kContinues : kTimeAndSpeed, [&] {
         return text(seen) + ": the pilot moves " + text(way) + " m in " + text(dt) + " s to " +
-               text(step.next.position) + ", the vehicle's speed allows " + text(most) + " m";
+               text(step.next.position) + ", the vehicle's speed allows " + text(max_way) + " m";
       });
   report.expect(step.next.velocity.norm() <= top_speed(request.vehicle) * (1 + 1e-9) + 1e-9,
                 kTimeAndSpeed, [&] {
@@ -129,14 +129,14 @@ void judge_way(Report& report, const PilotStep& step, const Observation& seen) {
 }
 }  // namespace
 
-Flown fly(const Bench& bench, const Request& request, Report& report, int most,
+Flown fly(const Bench& bench, const Request& request, Report& report, int max_steps,
           const std::function<void(Observation&, int)>& between) {
   const auto planner = bench.make();
   const bool avoids_obstacles = planner->traits().avoids_obstacles;
   const auto pilot = planner->begin(request);
   Observation seen = first_observation(request);
   Flown flight;
-  while (flight.steps < most) {
+  while (flight.steps < max_steps) {
     if (between) {
       between(seen, flight.steps);
     }

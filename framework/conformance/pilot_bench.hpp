@@ -69,6 +69,6 @@ struct Flown {
 };
 /// Flies until the pilot arrives or is stuck, with each step judged; `between` may change its
 /// observation before a step.
-Flown fly(const Bench& bench, const Request& request, Report& report, int most,
+Flown fly(const Bench& bench, const Request& request, Report& report, int max_steps,
           const std::function<void(Observation&, int)>& between = {});
 }  // namespace altiplan::conformance::pilots

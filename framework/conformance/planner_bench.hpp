@@ -54,10 +54,9 @@ struct PlannerBench {
   }
 };
 
-/// A case of a planner: an escaping exception violates contract 3, unless Planner::plan found a
+/// Cases of a planner: an escaping exception violates contract 3, unless Planner::plan found a
 /// route's ends wrong.
-Case planner_case(const PlannerBench& bench, const char* name,
-                  void (*body)(const PlannerBench&, Report&));
+Cases planner_cases_on(const PlannerBench& bench, Bodies<PlannerBench> bodies);
 
 /// Checks a result against contracts 1 to 3; true if it is solved.
 bool judge(Report& report, const PlanResult& result, const Scene& scene);

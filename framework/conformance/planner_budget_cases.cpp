@@ -74,21 +74,21 @@ void iterations_kept(const PlannerBench& bench, Report& report) {
     // Also in each later phase of a larger budget: the planner may sample, then join, then search.
     const auto all = std::uint64_t(
         std::max(std::int64_t(0), counter(bench.make()->plan(scene.request).counters, "expanded")));
-    for (const std::uint64_t most :
+    for (const std::uint64_t max_iterations :
          {std::uint64_t(1), std::uint64_t(2), std::uint64_t(17), std::uint64_t(300),
           std::uint64_t(2000), all / 2, all * 3 / 4, all * 9 / 10, all - all / 100}) {
-      scene.request.budget.max_iterations = most;
+      scene.request.budget.max_iterations = max_iterations;
       const PlanResult result = bench.make()->plan(scene.request);
       judge(report, result, scene);
       const std::int64_t expanded = counter(result.counters, "expanded");
-      report.expect(expanded <= std::int64_t(most), kPlannerBudget, [&] {
-        return scene.name + ": of a budget of " + std::to_string(most) +
+      report.expect(expanded <= std::int64_t(max_iterations), kPlannerBudget, [&] {
+        return scene.name + ": of a budget of " + std::to_string(max_iterations) +
                " iterations the planner used " + std::to_string(expanded);
       });
       report.expect(result.status != PlanStatus::timed_out || result.budget_hit, kPlannerBudget,
                     [&] {
                       return scene.name + ": timed_out without budget_hit, of " +
-                             std::to_string(most) + " iterations";
+                             std::to_string(max_iterations) + " iterations";
                     });
     }
   }
@@ -186,13 +186,10 @@ void stopped_at_an_event(const PlannerBench& bench, Report& report) {
 }  // namespace
 
 Cases planner_budget_cases(const PlannerBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
-    return planner_case(bench, name, body);
-  };
-  return {made("no_iterations_give_timed_out", no_iterations),
-          made("iterations_are_kept", iterations_kept),
-          made("stopped_before_it_begins", stopped_before),
-          made("stopped_at_a_query_of_the_world", stopped_at_a_query),
-          made("stopped_at_a_trace_event", stopped_at_an_event)};
+  return planner_cases_on(bench, {{"no_iterations_give_timed_out", no_iterations},
+                                  {"iterations_are_kept", iterations_kept},
+                                  {"stopped_before_it_begins", stopped_before},
+                                  {"stopped_at_a_query_of_the_world", stopped_at_a_query},
+                                  {"stopped_at_a_trace_event", stopped_at_an_event}});
 }
 }  // namespace altiplan::conformance

@@ -7,22 +7,25 @@
 
 namespace altiplan::conformance {
 
-Case planner_case(const PlannerBench& bench, const char* name,
-                  void (*body)(const PlannerBench&, Report&)) {
-  return make_case(name, kPlannerStatus, [bench, body](Report& report) {
-    try {
-      body(bench, report);
-    } catch (const PluginError& error) {
-      if (error.reason() != Reason::contract_of_ends) {
-        throw;
+Cases planner_cases_on(const PlannerBench& bench, Bodies<PlannerBench> bodies) {
+  Cases cases;
+  for (const auto& [name, body] : bodies) {
+    cases.push_back(make_case(name, kPlannerStatus, [bench, body = body](Report& report) {
+      try {
+        body(bench, report);
+      } catch (const PluginError& error) {
+        if (error.reason() != Reason::contract_of_ends) {
+          throw;
+        }
+        report.add(kPlannerEnds, error.what());
       }
-      report.add(kPlannerEnds, error.what());
-    }
-  });
+    }));
+  }
+  return cases;
 }
 
 bool judge(Report& report, const PlanResult& result, const Scene& scene) {
-  const auto told = [&](const std::string& what) {
+  const auto report_text = [&](const std::string& what) {
     return [&, what] {
       return scene.name + ": the planner " + what + "; it returned " + text(result);
     };
@@ -31,11 +34,11 @@ bool judge(Report& report, const PlanResult& result, const Scene& scene) {
     const bool known =
         result.status == PlanStatus::no_route || result.status == PlanStatus::timed_out ||
         result.status == PlanStatus::cancelled || result.status == PlanStatus::invalid_problem;
-    report.expect(known, kPlannerStatus, told("returns an undefined status"));
+    report.expect(known, kPlannerStatus, report_text("returns an undefined status"));
     report.expect(result.route.empty(), kPlannerStatus,
-                  told("returns a route, but not the status solved"));
+                  report_text("returns a route, but not the status solved"));
     report.expect(result.status != PlanStatus::no_route || !result.message.empty(), kPlannerStatus,
-                  told("gives no reason for finding no route"));
+                  report_text("gives no reason for finding no route"));
     return false;
   }
   const std::string fault = unsound(result.route, scene);
@@ -44,7 +47,7 @@ bool judge(Report& report, const PlanResult& result, const Scene& scene) {
     return scene.name + ": the planner's route " + fault + ": " + text(result.route);
   });
   report.expect(counter(result.counters, "expanded") >= 0, kPlannerBudget,
-                told("does not count what it `expanded`"));
+                report_text("does not count what it `expanded`"));
   return true;
 }
 
@@ -283,17 +286,14 @@ void inputs_unchanged(const PlannerBench& bench, Report& report) {
 }  // namespace
 
 Cases planner_law_cases(const PlannerBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
-    return planner_case(bench, name, body);
-  };
-  return {made("routes_are_sound_in_seeded_worlds", seeded_worlds),
-          made("large_coordinates", large_coordinates),
-          made("a_million_obstacles", million_obstacles),
-          made("limits_are_honoured", limits_honoured),
-          made("impossible_start_or_goal_is_a_status", impossible_ends),
-          made("possible_starts_and_goals", possible_ends),
-          made("answers_do_not_depend_on_history_or_threads", answers_again),
-          made("inputs_stay_as_they_are", inputs_unchanged)};
+  return planner_cases_on(bench, {{"routes_are_sound_in_seeded_worlds", seeded_worlds},
+                                  {"large_coordinates", large_coordinates},
+                                  {"a_million_obstacles", million_obstacles},
+                                  {"limits_are_honoured", limits_honoured},
+                                  {"impossible_start_or_goal_is_a_status", impossible_ends},
+                                  {"possible_starts_and_goals", possible_ends},
+                                  {"answers_do_not_depend_on_history_or_threads", answers_again},
+                                  {"inputs_stay_as_they_are", inputs_unchanged}});
 }
 
 Cases planner_cases(const Factory<Planner>& make, const Options& options) {

@@ -145,13 +145,13 @@ void anytime(const PlannerBench& bench, Report& report) {
     Scene scene = bench.world(std::uint64_t(n), bench.flight());
     const std::int64_t all = counter(planner->plan(scene.request).counters, "expanded");
     double before = kInfinity;
-    for (const std::int64_t most : {all / 16, all / 8, all / 4, all / 2, all, 2 * all}) {
-      scene.request.budget.max_iterations = std::uint64_t(most);
+    for (const std::int64_t max_iterations : {all / 16, all / 8, all / 4, all / 2, all, 2 * all}) {
+      scene.request.budget.max_iterations = std::uint64_t(max_iterations);
       const PlanResult result = planner->plan(scene.request);
       const double now = judge(report, result, scene) ? length(result.route) : kInfinity;
       report.expect(now <= before * (1 + 1e-12), kAnytime, [&] {
-        return scene.name + ": " + std::to_string(most) + " iterations give " + text(now) +
-               " m, fewer gave " + text(before) + " m";
+        return scene.name + ": " + std::to_string(max_iterations) + " iterations give " +
+               text(now) + " m, fewer gave " + text(before) + " m";
       });
       before = now;
     }
@@ -160,10 +160,9 @@ void anytime(const PlannerBench& bench, Report& report) {
 }  // namespace
 
 Cases planner_trait_cases(const PlannerBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
-    return planner_case(bench, name, body);
-  };
-  return {made("trait_complete", complete), made("trait_optimal", optimal),
-          made("trait_any_angle", any_angle), made("trait_anytime", anytime)};
+  return planner_cases_on(bench, {{"trait_complete", complete},
+                                  {"trait_optimal", optimal},
+                                  {"trait_any_angle", any_angle},
+                                  {"trait_anytime", anytime}});
 }
 }  // namespace altiplan::conformance

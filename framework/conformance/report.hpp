@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "altiplan/conformance.hpp"
@@ -31,6 +33,21 @@ class Report {
 /// A case whose body reports; an exception that escapes it becomes a finding of `thrown`, the
 /// contract that forbids it.
 Case make_case(std::string name, std::string thrown, std::function<void(Report&)> body);
+
+/// Names and bodies of cases on a bench.
+template <class Bench>
+using Bodies = std::initializer_list<std::pair<const char*, void (*)(const Bench&, Report&)>>;
+
+/// Such cases, of one contract that forbids exceptions.
+template <class Bench>
+Cases cases_on(const Bench& bench, const char* thrown, Bodies<Bench> bodies) {
+  Cases cases;
+  for (const auto& [name, body] : bodies) {
+    cases.push_back(
+        make_case(name, thrown, [bench, body = body](Report& report) { body(bench, report); }));
+  }
+  return cases;
+}
 
 /// With enough digits to reproduce the number.
 std::string text(double value);

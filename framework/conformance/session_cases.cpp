@@ -28,11 +28,12 @@ class Flown {
 
   PlanResult update(const std::string& what, const std::vector<Change>& changes = {}) {
     const Request& request = scene_.request;
-    Scene told = scene_;
-    told.name += ", " + what;
-    PlanResult said;
+    Scene scene = scene_;
+    scene.name += ", " + what;
+    PlanResult result;
     try {
-      said = session_->update(request.start, request.goal, request.world, changes, request.budget);
+      result =
+          session_->update(request.start, request.goal, request.world, changes, request.budget);
     } catch (const PluginError& error) {  // Session::update checks both clauses of the contract
       const bool contract_of_results = error.reason() == Reason::contract_of_results;
       if (!contract_of_results && error.reason() != Reason::contract_of_ends) {
@@ -40,15 +41,15 @@ class Flown {
       }
       report_.add(
           contract_of_results ? kKeepsResult : kContinues,
-          told.name + ", the state at " + text(request.start.position) + ": " + error.what());
-      return said;
+          scene.name + ", the state at " + text(request.start.position) + ": " + error.what());
+      return result;
     }
-    report_.expect(equal(said, session_->result()), kKeepsResult, [&] {
-      return told.name + ": update returned " + text(said) + ", result() is " +
+    report_.expect(equal(result, session_->result()), kKeepsResult, [&] {
+      return scene.name + ": update returned " + text(result) + ", result() is " +
              text(session_->result());
     });
-    judge(report_, said, told);
-    return said;
+    judge(report_, result, scene);
+    return result;
   }
 
  private:
@@ -133,9 +134,9 @@ void hopeless_updates(const PlannerBench& bench, Report& report) {
     for (const bool at_start : {true, false}) {
       const Vec3 at = at_start ? first.request.start.position : first.request.goal.position;
       with_solid(flown.scene(), Sphere{at, bench.options.unit_m / 2}, "over", changes);
-      const PlanResult said = flown.update(
+      const PlanResult result = flown.update(
           std::string("an update with a ball over the ") + (at_start ? "state" : "goal"), changes);
-      report.expect(said.status != PlanStatus::solved, kPlannerStatus, [&] {
+      report.expect(result.status != PlanStatus::solved, kPlannerStatus, [&] {
         return first.name + ": solved, with a ball over the " + (at_start ? "state" : "goal");
       });
       changes[0].kind = Change::Kind::remove;
@@ -145,18 +146,18 @@ void hopeless_updates(const PlannerBench& bench, Report& report) {
       flown.update("an update with the ball gone", changes);
     }
     flown.scene().request.budget.max_iterations = 0;
-    const PlanResult said = flown.update("an update with a budget of 0 iterations");
-    report.expect(counter(said.counters, "expanded") <= 0, kPlannerBudget, [&] {
+    const PlanResult result = flown.update("an update with a budget of 0 iterations");
+    report.expect(counter(result.counters, "expanded") <= 0, kPlannerBudget, [&] {
       return first.name + ": an update with a budget of 0 iterations used " +
-             std::to_string(counter(said.counters, "expanded"));
+             std::to_string(counter(result.counters, "expanded"));
     });
   }
 }
 
 void equal_sessions(const PlannerBench& bench, Report& report) {
   const Scene scene = bench.world(0, bench.flight());
-  std::vector<PlanResult> said[2];
-  for (auto& results : said) {
+  std::vector<PlanResult> both[2];
+  for (auto& results : both) {
     Flown flown(bench, scene, report);
     results.push_back(flown.result());
     std::vector<Change> changes;
@@ -166,7 +167,7 @@ void equal_sessions(const PlannerBench& bench, Report& report) {
     results.push_back(flown.update("an update", changes));
     results.push_back(flown.update("another update"));
   }
-  report.expect(std::equal(said[0].begin(), said[0].end(), said[1].begin(), equal), kPlannerPure,
+  report.expect(std::equal(both[0].begin(), both[0].end(), both[1].begin(), equal), kPlannerPure,
                 [&] { return scene.name + ": two sessions with equal updates differ"; });
 }
 
@@ -188,13 +189,10 @@ void incremental(const PlannerBench& bench, Report& report) {
 }  // namespace
 
 Cases session_cases(const PlannerBench& bench) {
-  const auto made = [&](const char* name, void (*body)(const PlannerBench&, Report&)) {
-    return planner_case(bench, name, body);
-  };
-  return {made("session_goes_on_along_its_route", goes_on),
-          made("session_takes_changes", changes_taken),
-          made("session_survives_hopeless_updates", hopeless_updates),
-          made("session_equal_updates_give_equal_results", equal_sessions),
-          made("trait_incremental", incremental)};
+  return planner_cases_on(bench, {{"session_goes_on_along_its_route", goes_on},
+                                  {"session_takes_changes", changes_taken},
+                                  {"session_survives_hopeless_updates", hopeless_updates},
+                                  {"session_equal_updates_give_equal_results", equal_sessions},
+                                  {"trait_incremental", incremental}});
 }
 }  // namespace altiplan::conformance

@@ -37,9 +37,9 @@ std::map<std::string, double> excesses(const Route& route, const Scene& scene) {
     const bool too_small = violation.value < violation.limit;
     const double by =
         violation.value == violation.limit ? 1 : std::abs(violation.value - violation.limit);
-    double& most =
+    double& max_excess =
         worst[violation.constraint + (too_small ? " below " : " above ") + text(violation.limit)];
-    most = std::max(most, by);
+    max_excess = std::max(max_excess, by);
   }
   return worst;
 }
@@ -234,9 +234,9 @@ void budgets(const SmootherBench& bench, Report& report) {
   Scene scene = bench.world(1);
   const Polyline walk = sound_walk(scene, RandomStream(bench.options.seed).sub("budget"));
   scene = ending_as(scene, walk);
-  for (const std::uint64_t most : {0, 1, 10}) {
-    scene.request.budget.max_iterations = most;
-    scene.name = "a budget of " + std::to_string(most) + " iterations";
+  for (const std::uint64_t max_iterations : {0, 1, 10}) {
+    scene.request.budget.max_iterations = max_iterations;
+    scene.name = "a budget of " + std::to_string(max_iterations) + " iterations";
     judged(report, *smoother, walk, scene);
   }
   std::stop_source source;
@@ -278,14 +278,12 @@ void answers_again(const SmootherBench& bench, Report& report) {
 
 Cases smoother_cases(const Factory<Smoother>& make, const Options& options) {
   const SmootherBench bench{make, options};
-  const auto made = [&](const char* name, void (*body)(const SmootherBench&, Report&)) {
-    return make_case(name, kStatus, [bench, body](Report& report) { body(bench, report); });
-  };
-  return {made("nothing_gets_worse_under_any_limit", laws_under_every_limit),
-          made("over_ground_and_with_a_heading", over_ground_and_with_a_heading),
-          made("short_routes_come_back", short_routes),
-          made("odd_routes", odd_routes),
-          made("budgets_and_stops", budgets),
-          made("answers_do_not_depend_on_history_or_threads", answers_again)};
+  return cases_on(bench, kStatus,
+                  {{"nothing_gets_worse_under_any_limit", laws_under_every_limit},
+                   {"over_ground_and_with_a_heading", over_ground_and_with_a_heading},
+                   {"short_routes_come_back", short_routes},
+                   {"odd_routes", odd_routes},
+                   {"budgets_and_stops", budgets},
+                   {"answers_do_not_depend_on_history_or_threads", answers_again}});
 }
 }  // namespace altiplan::conformance

@@ -244,14 +244,14 @@ Scene moved_scene(const Scene& scene, const Vec3& by) {
 }
 
 double own_clearance(const Scene& scene, const Vec3& p) {
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (const Shape& solid : scene.solids) {
-    least = std::min(least, own_distance(solid, p));
+    min_distance = std::min(min_distance, own_distance(solid, p));
   }
   if (scene.ridge != nullptr) {
-    least = std::min(least, scene.ridge->clearance(p));
+    min_distance = std::min(min_distance, scene.ridge->clearance(p));
   }
-  return least;
+  return min_distance;
 }
 
 namespace {

@@ -82,6 +82,8 @@ class Sdk:
         for component in ("library", "sdk"):
             quietly(["cmake", "--install", build, "--component", component])
         self.library = self.prefix / "lib/libaltiplan.so"
+        hashed = self.prefix / "include/altiplan/api_hash.hpp"  # from API 2.0 on
+        self.hash = hashed.read_text() if hashed.exists() else ""
         self.probe = folder / "probe.so"
         quietly(["g++", "-std=c++20", *DEBUG.split(), "-fPIC", "-shared", "-fvisibility=hidden",
                  f"-I{self.prefix}/include", "-isystem/usr/include/eigen3",
@@ -145,8 +147,9 @@ def shell_of(old, folder):
 
 def loads(old, today, folder):
     """Whether plugins of that version must work; that they do, or are refused as documented."""
-    supported = old.api[0] == today.api[0] and old.api[1] <= today.api[1]
-    sentence = f"built for API {old.version()}, this altiplan offers {today.version()}"
+    supported = old.hash == today.hash
+    sentence = (f"built for API {old.version()}, this altiplan offers {today.version()}"
+                if old.api[0] != today.api[0] else "built with other headers; build it again")
     for project, lines in projects(old, folder).items():
         shell = shell_of(old, project)
         built = [line for line in lines if line.startswith("cmake")]

@@ -4,5 +4,5 @@
 
 namespace {
 __attribute__((section("altiplan_manifest"), used)) constinit const altiplan::Manifest kManifest =
-    altiplan::make_manifest<altiplan::Constraint>("constraint", "delta", "exports nothing");
+    altiplan::make_manifest("constraint", "delta", "exports nothing");
 }  // namespace

@@ -112,8 +112,8 @@ constexpr PluginEntry silent_entry(const char* name, const char*) {
   namespace {                                                                                     \
   __attribute__((section("altiplan_manifest"),                                                    \
                  used)) constinit const altiplan::Manifest ALTIPLAN_JOIN(bad_manifest_, n) =      \
-      altiplan::make_manifest<altiplan::Interface>(                                               \
-          altiplan::detail::Kind<altiplan::Interface>::kName, plugin_name, plugin_sentence);      \
+      altiplan::make_manifest(altiplan::detail::kKind<altiplan::Interface>, plugin_name,          \
+                              plugin_sentence);                                                   \
   constinit const altiplan::PluginEntry ALTIPLAN_JOIN(bad_entry_, n) =                            \
       altiplan::bad::maker<altiplan::Interface, Class, Params>(plugin_name, plugin_sentence);     \
   __attribute__((section("altiplan_entries"), used))                                              \

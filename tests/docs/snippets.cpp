@@ -88,6 +88,8 @@ class LittleClimbing final : public Constraint {
     return {};  // no violation
   }
 
+  bool do_admits_all() const override { return true; }  // no call per leg
+
   double max_m_ = 500;
 };
 // }

@@ -105,6 +105,7 @@ class AtMost final : public Constraint {
   explicit AtMost(std::size_t points) : points_(points) {}
 
  private:
+  bool do_admits_all() const override { return true; }
   std::vector<Violation> do_violations(const Polyline& route, const Request&) const override {
     if (route.size() <= points_) {
       return {};

@@ -73,6 +73,19 @@ TEST(Lattice, TooManyCellsForAnyMemoryAreRefusedByCount) {
   }
 }
 
+TEST(Lattice, TooManyCellsAlongAnAxisAreRefused) {
+  const Request request =
+      testing::request_in(World(), {0, 0, 0}, {1, 0, 0}, {{0, 0, 0}, {3e9, 0.5, 0.5}});
+  try {
+    const Lattice lattice(request, {1, 1, 1}, Neighbourhood::all, {});
+    FAIL() << lattice.size() << " cells";
+  } catch (const ParameterError& error) {
+    EXPECT_STREQ(error.what(),
+                 "the lattice would have 3000000001 x 1 x 1 cells; allowed are 1e9 along an axis: "
+                 "choose larger cells or a smaller volume");
+  }
+}
+
 TEST(Lattice, DistanceIsTheShortestWayOnAnEmptyLattice) {
   Request request = testing::request_in(World(), {0, 0, 0}, {1, 1, 1}, {{0, 0, 0}, {50, 50, 50}});
   for (const Vec3& cell : {Vec3(5, 5, 5), Vec3(7, 3, 5), Vec3(10, 9, 1)}) {

@@ -159,7 +159,29 @@ class Quiet final : public Constraint {
     return leg_distance(Cylinder{0, 0}, leg.from, leg.to) >= 300;
   }
 };
-class Plain final : public Constraint {};
+class Plain final : public Constraint {
+  bool do_admits_all() const override { return true; }
+};
+
+/// Another constraint, for short legs alone.
+class ShortOnly final : public Constraint {
+ public:
+  explicit ShortOnly(std::shared_ptr<const Constraint> inner) : inner_(std::move(inner)) {}
+
+ private:
+  bool do_admits(const Motion& leg) const override {
+    return (leg.to - leg.from).norm() < 10 && inner_->admits(leg);
+  }
+  std::shared_ptr<const Constraint> inner_;
+};
+
+TEST(Decorator, IsAskedThoughItsConstraintAdmitsAll) {
+  Request request = open_request({1000, 0, 100});
+  apply_constraints(request, {{"short", std::make_shared<ShortOnly>(std::make_shared<Plain>())}},
+                    AppliesTo::route);
+  EXPECT_FALSE(request.constraints[0].admits_all);
+  EXPECT_FALSE(check(Polyline{kStart, request.goal.position}, request).ok());
+}
 
 TEST(EndsOfAConstraint, AreNamedIfItRefusesThem) {
   Request request = open_request({1000, 0, 100});

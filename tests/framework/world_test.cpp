@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <thread>
+
 #include "altiplan/frame.hpp"
 #include "altiplan/kit/formats/iso_time.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
@@ -93,6 +98,26 @@ TEST(World, PlannersAnswerWhereTheGridTakesTheirTime) {
   }
 }
 
+TEST(World, ASessionBegunWithoutTimeGoesOnWithTheNext) {
+  const auto planner = testing::make_planner("dstar_lite", "{moves: cells, cell_m: [50, 50, 50]}");
+  Request request = testing::request_in(posts(), {500, 500, 50}, {9000, 9500, 50},
+                                        {{0, 0, 0}, {10e3, 10e3, 100}});
+  std::stop_source stop;
+  for (const bool by_stop : {false, true}) {
+    request.budget = used_up(by_stop, stop);
+    const auto session = planner->begin(request);
+    ASSERT_NE(session, nullptr);
+    EXPECT_EQ(session->result().status, by_stop ? PlanStatus::cancelled : PlanStatus::timed_out);
+    EXPECT_EQ(session->result().reason, by_stop ? Reason::none : Reason::deadline);
+    EXPECT_TRUE(session->result().budget_hit);
+    EXPECT_EQ(
+        session->update(request.start, request.goal, request.world, {}, request.budget).status,
+        session->result().status);
+    EXPECT_EQ(session->update(request.start, request.goal, request.world, {}, Budget()).status,
+              PlanStatus::solved);
+  }
+}
+
 TEST(World, ASessionGoesOnAfterAnUpdateWithoutTime) {
   const auto planner = testing::make_planner("dstar_lite", "{cell_m: [50, 50, 50]}");
   Request request = testing::request_in(posts(), {500, 500, 50}, {9000, 9500, 50},
@@ -111,6 +136,91 @@ TEST(World, ASessionGoesOnAfterAnUpdateWithoutTime) {
   ASSERT_EQ(again.status, PlanStatus::solved) << again.message;
   request.world = changed;
   EXPECT_NEAR(length(again.route), length(planner->plan(request).route), 1e-6);
+}
+
+/// A solid that fills its grids as a test wants it.
+class Filled final : public Environment {
+ public:
+  explicit Filled(std::function<void()> fill, std::function<void()> bound = nullptr)
+      : fill_(std::move(fill)), bound_(std::move(bound)) {}
+
+ private:
+  Box do_bounds() const override {
+    if (bound_) {
+      bound_();
+    }
+    return {{0, 0, 0}, {1, 1, 1}};
+  }
+  double do_clearance(const Vec3& p) const override { return (p - Vec3(0.5, 0.5, 0.5)).norm() - 2; }
+  void do_rasterize(VoxelGrid& grid) const override {
+    fill_();
+    grid.set({0, 0, 0}, true);
+  }
+
+  std::function<void()> fill_;
+  std::function<void()> bound_;
+};
+
+World filled(std::function<void()> fill, std::function<void()> bound = nullptr) {
+  return World().with(
+      {"slow", "filled", std::make_shared<Filled>(std::move(fill), std::move(bound)), true});
+}
+
+TEST(World, ALayerThatFillsAGridHoldsUpNobodyElse) {
+  std::promise<void> begun;
+  std::promise<void> changed;
+  std::future_status met{};
+  const World world = filled([&] {
+    begun.set_value();
+    met = changed.get_future().wait_for(std::chrono::seconds(5));
+  });
+  auto grid = std::async(std::launch::async, [&] { return world.voxels(GridSpec()); });
+  begun.get_future().wait();
+  EXPECT_EQ(world.with(shapes("more", {})).layers().size(), 2U);
+  changed.set_value();
+  EXPECT_TRUE(grid.get()->blocked(0, 0, 0));
+  EXPECT_EQ(met, std::future_status::ready);
+}
+
+TEST(World, ThreadsThatWantOneGridGetTheSame) {
+  std::atomic<int> fills{0};
+  const World world = filled([&] {
+    ++fills;
+    for (int n = 0; n < 1000 && fills < 2; ++n) {  // so that both fill at once, if they may
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  auto grid = std::async(std::launch::async, [&] { return world.voxels(GridSpec()); });
+  const auto mine = world.voxels(GridSpec());
+  EXPECT_EQ(grid.get(), mine);
+  EXPECT_EQ(world.voxels(GridSpec()), mine);
+}
+
+TEST(World, NamesTheLayerThatThrowsWhileAGridIsFilled) {
+  const auto told = [](const World& world) {
+    try {
+      world.voxels(GridSpec());
+      return std::string("filled");
+    } catch (const PluginError& error) {
+      return std::string(error.what());
+    } catch (const std::exception& error) {
+      return std::string("not the layer's: ") + error.what();
+    }
+  };
+  int calls = 0;
+  const auto once = [&calls] {
+    if (++calls == 1) {
+      throw std::runtime_error("no paint");
+    }
+  };
+  const World world = filled(once);
+  EXPECT_EQ(told(world), "the layer 'slow' (filled) threw: no paint");
+  EXPECT_EQ(told(world), "filled");
+  calls = 0;
+  const World unbounded = filled([] {}, once).with(shapes("more", {Sphere{{0, 0, 0}, 1}}));
+  EXPECT_EQ(told(unbounded), "filled") << "its bounds are not asked yet";
+  EXPECT_EQ(told(unbounded.without("more")), "the layer 'slow' (filled) threw: no paint");
+  EXPECT_EQ(told(unbounded.without("more")), "filled");
 }
 
 TEST(World, LayersByIdAndRevision) {

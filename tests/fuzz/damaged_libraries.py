@@ -111,7 +111,7 @@ class Bench:
         self.program.parent.mkdir()
         shutil.copy(build / "bin/altiplan", self.program)
         (folder / "lib").mkdir()
-        shutil.copy(build / "lib/libaltiplan.so.1", folder / "lib/libaltiplan.so.1")
+        shutil.copy(build / "lib/libaltiplan.so.2", folder / "lib/libaltiplan.so.2")
         self.libraries = {}
         self.undamaged = {}
         plugins = sorted((build / "lib/altiplan/plugins").glob("libaltiplan_*.so"))

@@ -41,8 +41,8 @@ std::string whole_library() {
   append(note, Elf64_Nhdr{4, 20, NT_GNU_BUILD_ID});
   note += std::string("GNU\0abcdefghijklmnopqrst", 24);
   std::string body;
-  append(body, make_manifest<Planner>("planner", "fuzz", "a sentence"));
-  append(body, make_manifest<Planner>("smoother", "fuzz", "another"));
+  append(body, make_manifest("planner", "fuzz", "a sentence"));
+  append(body, make_manifest("smoother", "fuzz", "another"));
   const std::size_t manifest_size = body.size();
   host::Checksum checksum{};
   std::memcpy(checksum.magic, host::Checksum::kMagic, sizeof checksum.magic);

@@ -101,20 +101,37 @@ TEST_F(RegistryTest, ReadsAManifestWithoutRunningAnything) {
 TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
   const auto refusal = [&](auto edit) { return examine_library(edited("e.so", edit)).refused; };
   EXPECT_EQ(refusal([](Manifest& m) { m.api_major = 7; }),
-            "built for API 7.0, this altiplan offers 1.0");
+            "built for API 7.0, this altiplan offers 2.0; build it again "
+            "(docs/how-to/write-a-plugin.md)");
   EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 1; }),
-            "built for API 1.1, this altiplan offers 1.0");
+            "built for API 2.1, this altiplan offers 2.0; build it again "
+            "(docs/how-to/write-a-plugin.md)");
   EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 0; }), "");
   EXPECT_EQ(refusal([](Manifest& m) { m.cxx11_abi ^= 1; }),
             "built with _GLIBCXX_USE_CXX11_ABI = 0, this altiplan with 1");
   EXPECT_HAS(refusal([](Manifest& m) { m.glibcxx_debug ^= 1; }), "built with _GLIBCXX_DEBUG = ");
   EXPECT_HAS(refusal([](Manifest& m) { m.sanitizers ^= 3; }), "this altiplan with ");
-  EXPECT_EQ(refusal([](Manifest& m) { m.layouts[0] = 32 * 64 + 16; }),
-            "its Vec3 has 32 bytes aligned to 16, this altiplan's 24 bytes aligned to 8: built "
-            "with other headers or ABI flags");
-  EXPECT_HAS(refusal([](Manifest& m) { m.struct_size = 400; }),
-             "400 bytes per plugin, this altiplan's");
+  EXPECT_EQ(refusal([](Manifest& m) { std::strcpy(m.api_hash, "0123456789abcdef"); }),
+            "its headers' declarations have the hash 0123456789abcdef, this altiplan's " +
+                std::string(ALTIPLAN_API_HASH) + ": built with other headers; build it again");
+  EXPECT_EQ(refusal([](Manifest& m) { m.struct_size = 400; }),
+            "its manifest has 400 bytes per plugin, this altiplan's " +
+                std::to_string(sizeof(Manifest)) + ": built with other headers; build it again");
+  // As those of 0.1 were, whose manifest was longer.
+  EXPECT_EQ(refusal([](Manifest& m) {
+              m.struct_size = 592;
+              m.api_major = 1;
+            }),
+            "built for API 1.0, this altiplan offers 2.0; build it again "
+            "(docs/how-to/write-a-plugin.md)");
   EXPECT_EQ(refusal([](Manifest& m) { m.optimised ^= 1; }), "") << "information, no reason";
+}
+
+TEST_F(RegistryTest, RefusesAPluginBuiltWithHeadersThatDeclareOtherwise) {
+  EXPECT_EQ(examine_library(kBroken / "other_comments/other_comments.so").refused, "");
+  EXPECT_HAS(examine_library(kBroken / "other_order/other_order.so").refused,
+             ", this altiplan's " + std::string(ALTIPLAN_API_HASH) +
+                 ": built with other headers; build it again");
 }
 
 TEST_F(RegistryTest, NamesTheFilesOfANameThatIsOfferedTwice) {

@@ -24,10 +24,6 @@ bool ends_with_nul(const char (&text)[N]) {
   return std::memchr(text, '\0', N) != nullptr;
 }
 
-std::string layout_text(std::uint32_t layout) {
-  return std::to_string(layout / 64) + " bytes aligned to " + std::to_string(layout % 64);
-}
-
 std::string sanitizer_text(unsigned bits) {
   std::string text;
   for (const auto& [bit, name] :
@@ -39,15 +35,25 @@ std::string sanitizer_text(unsigned bits) {
   return text.empty() ? "no sanitizer" : "sanitizer " + text;
 }
 
+/// Says that the record was built for an API that this host does not offer; "" if it offers it.
+std::string other_api(const Manifest& plugin) {
+  const auto version = [](int major, int minor) {
+    return std::to_string(major) + "." + std::to_string(minor);
+  };
+  if (plugin.api_major == ALTIPLAN_API_MAJOR && plugin.api_minor <= ALTIPLAN_API_MINOR) {
+    return "";
+  }
+  return "built for API " + version(plugin.api_major, plugin.api_minor) +
+         ", this altiplan offers " + version(ALTIPLAN_API_MAJOR, ALTIPLAN_API_MINOR) +
+         "; build it again (docs/how-to/write-a-plugin.md)";
+}
+
 /// The reason why this host cannot load a plugin with this manifest, naming both sides; "" if it
 /// can.
 std::string mismatch(const Manifest& plugin) {
-  const Manifest host = make_manifest<Planner>("", "", "");
-  const auto version = [](const Manifest& m) {
-    return std::to_string(m.api_major) + "." + std::to_string(m.api_minor);
-  };
-  if (plugin.api_major != host.api_major || plugin.api_minor > host.api_minor) {
-    return "built for API " + version(plugin) + ", this altiplan offers " + version(host);
+  const Manifest host = make_manifest("", "", "");
+  if (const std::string other = other_api(plugin); !other.empty()) {
+    return other;
   }
   const auto differ = [](const char* what, unsigned theirs, unsigned ours) {
     return "built with " + std::string(what) + " = " + std::to_string(theirs) +
@@ -63,20 +69,17 @@ std::string mismatch(const Manifest& plugin) {
     return "built with " + sanitizer_text(plugin.sanitizers) + ", this altiplan with " +
            sanitizer_text(host.sanitizers);
   }
-  for (std::size_t i = 0; i < Manifest::kLayouts; ++i) {
-    if (plugin.layouts[i] != 0 && plugin.layouts[i] != host.layouts[i]) {
-      return std::string("its ") + kLayoutNames[i] + " has " + layout_text(plugin.layouts[i]) +
-             ", this altiplan's " + layout_text(host.layouts[i]) +
-             ": built with other headers or ABI flags";
-    }
+  if (std::strcmp(plugin.api_hash, host.api_hash) != 0) {
+    return "its headers' declarations have the hash " + std::string(plugin.api_hash) +
+           ", this altiplan's " + host.api_hash + ": built with other headers; build it again";
   }
   return "";
 }
 
 /// Adds the record to the library; throws ElfError if it is invalid.
 void take_record(const Manifest& record, Library& library) {
-  if (!ends_with_nul(record.compiler) || !ends_with_nul(record.kind) ||
-      !ends_with_nul(record.name) || !ends_with_nul(record.sentence) ||
+  if (!ends_with_nul(record.api_hash) || !ends_with_nul(record.compiler) ||
+      !ends_with_nul(record.kind) || !ends_with_nul(record.name) || !ends_with_nul(record.sentence) ||
       !ends_with_nul(record.file)) {
     throw ElfError("damaged manifest: an unterminated text");
   }
@@ -105,7 +108,7 @@ void read_manifest(const std::string& bytes, Library& library) {
       at += 4;
       continue;
     }
-    constexpr std::size_t kFixed = sizeof(Manifest::magic) + sizeof(Manifest::struct_size);
+    constexpr std::size_t kFixed = offsetof(Manifest, cxx11_abi);
     if (bytes.size() - at < kFixed ||
         std::memcmp(bytes.data() + at, Manifest::kMagic, sizeof Manifest::kMagic) != 0) {
       throw ElfError("damaged manifest: expected 'altiplan plugin' at byte " + std::to_string(at));
@@ -113,9 +116,12 @@ void read_manifest(const std::string& bytes, Library& library) {
     Manifest record;
     std::memcpy(&record, bytes.data() + at, kFixed);
     if (record.struct_size != sizeof(Manifest)) {
+      if (const std::string other = other_api(record); !other.empty()) {
+        throw ElfError(other);
+      }
       throw ElfError("its manifest has " + std::to_string(record.struct_size) +
                      " bytes per plugin, this altiplan's " + std::to_string(sizeof(Manifest)) +
-                     ": built for another API");
+                     ": built with other headers; build it again");
     }
     if (bytes.size() - at < sizeof(Manifest)) {
       throw ElfError("damaged manifest: cut off in a record");

@@ -94,7 +94,7 @@ class Run {
   template <class Interface>
   std::unique_ptr<Interface> make(const StepEntry& entry,
                                   std::unique_ptr<Interface> (*PluginEntry::*maker)(const Value*)) {
-    const char* kind = detail::Kind<Interface>::kName;
+    const char* kind = detail::kKind<Interface>;
     const std::string who =
         std::string("the ") + kind + " '" + entry.plugin + "' (" + entry.path + ")";
     enter(who + ": its constructor", entry.within_mb);

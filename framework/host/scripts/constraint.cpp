@@ -57,6 +57,7 @@ class ScriptConstraint : public Constraint {
   void do_tighten(Limits& limits, const Request& request) const override;
   std::vector<Violation> do_violations(const Polyline& route,
                                        const Request& request) const override;
+  bool do_admits_all() const override { return true; }
 
   std::unique_ptr<const ScriptObject> object_;
   AppliesTo applies_to_;
@@ -84,6 +85,7 @@ class ScriptLegConstraint final : public ScriptConstraint {
         .head.at("yes")
         .get<bool>();
   }
+  bool do_admits_all() const override { return false; }
 };
 
 /// What is told is taken where it is stricter, so that nothing is loosened.

@@ -89,7 +89,7 @@ Manifest manifest_of(const Offer& offer, const std::string& text, const fs::path
                       std::to_string(sentence->size()) + " bytes, expected 1 to " +
                       std::to_string(sizeof(Manifest::sentence) - 1));
   }
-  Manifest manifest = make_manifest<Planner>("", "", "");
+  Manifest manifest = make_manifest("", "", "");
   offer.kind.copy(manifest.kind, sizeof manifest.kind - 1);
   std::copy(name->begin(), name->end(), manifest.name);
   std::copy(sentence->begin(), sentence->end(), manifest.sentence);

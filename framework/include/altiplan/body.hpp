@@ -37,7 +37,7 @@ struct ALTIPLAN_API Body {
   std::optional<double> yaw{};
   bool pitches = false;  ///< true: by the climb angle; false: it stays level
 
-  /// Radius of a sphere about the reference point that one part contains, and of the least that
+  /// Radius of a sphere about the reference point that one part contains, and of the smallest that
   /// contains all parts.
   double inner_m() const;
   double outer_m() const;

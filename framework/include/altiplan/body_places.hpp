@@ -26,7 +26,7 @@ struct NearestBody {
   bool proven;        ///< false: the search ended early, and another place may be nearer
 };
 
-/// Searches the route for the least distance between body and layers, to 1 cm; none without a body,
-/// a leg or an obstacle. The search ends early on long routes and far from obstacles.
+/// Searches the route for the minimum distance between body and layers, to 1 cm; none without a
+/// body, a leg or an obstacle. The search ends early on long routes and far from obstacles.
 ALTIPLAN_API std::optional<NearestBody> nearest_body(const Route& route, const Request& request);
 }  // namespace altiplan

@@ -47,6 +47,7 @@ enum class AppliesTo { route, track, both };
 ///  4. Legs are straight: a turn is given as chords at most kChordTolerance from it.
 ///  5. violations is empty if and only if the route satisfies the constraint; it covers what
 ///     tighten and admits cannot express (path-dependent constraints).
+///  6. admits_all only if admits refuses nothing: the constraint is then not asked leg by leg.
 class ALTIPLAN_API Constraint {
  public:
   virtual ~Constraint();
@@ -56,14 +57,16 @@ class ALTIPLAN_API Constraint {
   std::vector<Violation> violations(const Polyline& route, const Request& request) const {
     return do_violations(route, request);
   }
-  /// True if the constraint does not override do_admits: it admits every leg.
-  bool admits_all() const;
+  bool admits_all() const { return do_admits_all(); }
 
  private:
   virtual AppliesTo do_applies_to() const;
   /// The request has its world, start and goal; its limits are those tightened so far.
   virtual void do_tighten(Limits& limits, const Request& request) const;
   virtual bool do_admits(const Motion& leg) const;
+  /// Default: false, which is never wrong. True makes a constraint that only tightens, or only has
+  /// violations, cost nothing per leg.
+  virtual bool do_admits_all() const;
   virtual std::vector<Violation> do_violations(const Polyline& route, const Request& request) const;
 };
 

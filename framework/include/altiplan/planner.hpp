@@ -46,7 +46,9 @@ class ALTIPLAN_API Planner {
  public:
   virtual ~Planner();
   PlanResult plan(const Request& request) const;
-  /// Plans, and keeps its search state for updates. The default session replans from scratch.
+  /// Plans, and keeps its search state for updates. The session may refer to the planner, which
+  /// must outlive it, but not to the request. Where the budget ends before it has begun, the
+  /// session replans from scratch.
   std::unique_ptr<Session> begin(const Request& request) const;
   Traits traits() const { return do_traits(); }
 

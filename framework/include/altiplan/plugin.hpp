@@ -30,15 +30,17 @@ ALTIPLAN_API __attribute__((used)) inline const altiplan::PluginEntry* const* al
 #define ALTIPLAN_JOIN(a, b) ALTIPLAN_JOIN_(a, b)
 #define ALTIPLAN_PLUGIN(Interface, plugin_name, Class, Params, plugin_sentence) \
   ALTIPLAN_PLUGIN_(Interface, plugin_name, Class, Params, plugin_sentence, __COUNTER__)
-#define ALTIPLAN_PLUGIN_(Interface, plugin_name, Class, Params, plugin_sentence, n)              \
-  namespace {                                                                                    \
-  __attribute__((section("altiplan_manifest"), used)) constinit const ::altiplan::Manifest       \
-      ALTIPLAN_JOIN(altiplan_manifest_, n) = ::altiplan::make_manifest<::altiplan::Interface>(   \
-          ::altiplan::detail::Kind<::altiplan::Interface>::kName, plugin_name, plugin_sentence); \
-  constinit const ::altiplan::PluginEntry ALTIPLAN_JOIN(altiplan_entry_, n) =                    \
-      ::altiplan::detail::make_entry<::altiplan::Interface, Class, Params>(plugin_name,          \
-                                                                           plugin_sentence);     \
-  __attribute__((section("altiplan_entries"), used))                                             \
-  const ::altiplan::PluginEntry* const ALTIPLAN_JOIN(altiplan_entry_at_,                         \
-                                                     n) = &ALTIPLAN_JOIN(altiplan_entry_, n);    \
+#define ALTIPLAN_PLUGIN_(Interface, plugin_name, Class, Params, plugin_sentence, n)            \
+  namespace {                                                                                  \
+  __attribute__((section("altiplan_manifest"),                                                 \
+                 used)) constinit const ::altiplan::Manifest ALTIPLAN_JOIN(altiplan_manifest_, \
+                                                                           n) =                \
+      ::altiplan::make_manifest(::altiplan::detail::kKind<::altiplan::Interface>, plugin_name, \
+                                plugin_sentence);                                              \
+  constinit const ::altiplan::PluginEntry ALTIPLAN_JOIN(altiplan_entry_, n) =                  \
+      ::altiplan::detail::make_entry<::altiplan::Interface, Class, Params>(plugin_name,        \
+                                                                           plugin_sentence);   \
+  __attribute__((section("altiplan_entries"), used))                                           \
+  const ::altiplan::PluginEntry* const ALTIPLAN_JOIN(altiplan_entry_at_,                       \
+                                                     n) = &ALTIPLAN_JOIN(altiplan_entry_, n);  \
   }

@@ -5,11 +5,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <functional>
 #include <memory>
 
-#include "altiplan/geometry.hpp"
+#include "altiplan/api_hash.hpp"
 #include "altiplan/params.hpp"
 
 namespace altiplan {
@@ -22,34 +20,24 @@ class LocalPlanner;
 class Smoother;
 class Tuner;
 struct Site;
-struct Nearby;
-struct LayerInfo;
-class VoxelGrid;
-class World;
-struct Limits;
-struct Request;
-struct SearchProgress;
-struct PlanResult;
-struct Observation;
-struct PilotStep;
-struct Vehicle;
 
 /// Self-description of a library, read from its file before any of its code runs: plain data in the
 /// ELF section `altiplan_manifest`, one record per plugin. The host compares it with its own and,
 /// on a mismatch, refuses the library and prints both; compiler and optimisation are informative.
 struct Manifest {
   static constexpr char kMagic[16] = "altiplan plugin";
-  static constexpr std::size_t kLayouts = 22;
 
+  // These four have their place in every version of the API.
   char magic[16];
   std::uint32_t struct_size;
   std::uint16_t api_major;
   std::uint16_t api_minor;
+
   std::uint8_t cxx11_abi;
   std::uint8_t glibcxx_debug;
   std::uint8_t sanitizers;  ///< 1 address, 2 thread, 4 memory
   std::uint8_t optimised;
-  std::uint32_t layouts[kLayouts];  ///< layout_of each struct in kLayoutNames
+  char api_hash[20];  ///< ALTIPLAN_API_HASH: a change to anything that crosses changes it
   char compiler[64];
   char kind[24];
   char name[64];
@@ -57,23 +45,6 @@ struct Manifest {
   char file[64];           ///< the source file, without its folder
   std::uint32_t checksum;  ///< checksum_of the record; detects a damaged file before it is trusted
 };
-
-inline constexpr const char* kLayoutNames[Manifest::kLayouts] = {
-    "Vec3",      "Box",        "std::string", "std::vector",   "std::function", "Value",
-    "FieldSpec", "BoundField", "Point",       "Frame",         "Site",          "Nearby",
-    "VoxelGrid", "World",      "Limits",      "Request",       "PlanResult",    "Observation",
-    "PilotStep", "Vehicle",    "LayerInfo",   "SearchProgress"};
-
-/// Size × 64 + alignment; 0 for a struct that the plugin of this interface does not include, and so
-/// cannot depend on. Static, since that may differ between two files of a plugin.
-template <class Interface, class T>
-static consteval std::uint32_t layout_of() {
-  if constexpr (requires { sizeof(T); }) {
-    return std::uint32_t(sizeof(T) * 64 + alignof(T));
-  } else {
-    return 0;
-  }
-}
 
 /// FNV-1a of the bytes before the checksum.
 constexpr std::uint32_t checksum_of(const Manifest& m) {
@@ -85,8 +56,8 @@ constexpr std::uint32_t checksum_of(const Manifest& m) {
   return sum;
 }
 
-/// The manifest of a plugin with the settings of this compilation.
-template <class Interface>
+/// The manifest of a plugin with the settings of this compilation. Static, since those may differ
+/// between two files of a plugin.
 static consteval Manifest make_manifest(const char* kind, const char* name, const char* sentence,
                                         const char* file = __builtin_FILE()) {
   Manifest m{};
@@ -125,12 +96,7 @@ static consteval Manifest make_manifest(const char* kind, const char* name, cons
 #ifdef __OPTIMIZE__
   m.optimised = 1;
 #endif
-  std::size_t count = 0;
-  const auto add = [&]<class... T>() { ((m.layouts[count++] = layout_of<Interface, T>()), ...); };
-  add.template
-  operator()<Vec3, Box, std::string, std::vector<int>, std::function<void()>, Value, FieldSpec,
-             BoundField, Point, Frame, Site, Nearby, VoxelGrid, World, Limits, Request, PlanResult,
-             Observation, PilotStep, Vehicle, LayerInfo, SearchProgress>();
+  copy(m.api_hash, sizeof m.api_hash, ALTIPLAN_API_HASH);
   copy(m.compiler, sizeof m.compiler, __VERSION__);
   copy(m.kind, sizeof m.kind, kind);
   copy(m.name, sizeof m.name, name);
@@ -191,32 +157,21 @@ ParamReport describe(const Value* parameters, const std::string& path) {
   return bind(params, parameters, path);
 }
 
+/// The name of an interface's kind.
 template <class Interface>
-struct Kind;
+inline constexpr const char* kKind = nullptr;
 template <>
-struct Kind<Environment> {
-  static constexpr const char* kName = "environment";
-};
+inline constexpr const char* kKind<Environment> = "environment";
 template <>
-struct Kind<Constraint> {
-  static constexpr const char* kName = "constraint";
-};
+inline constexpr const char* kKind<Constraint> = "constraint";
 template <>
-struct Kind<Planner> {
-  static constexpr const char* kName = "planner";
-};
+inline constexpr const char* kKind<Planner> = "planner";
 template <>
-struct Kind<LocalPlanner> {
-  static constexpr const char* kName = "local_planner";
-};
+inline constexpr const char* kKind<LocalPlanner> = "local_planner";
 template <>
-struct Kind<Smoother> {
-  static constexpr const char* kName = "smoother";
-};
+inline constexpr const char* kKind<Smoother> = "smoother";
 template <>
-struct Kind<Tuner> {
-  static constexpr const char* kName = "tuner";
-};
+inline constexpr const char* kKind<Tuner> = "tuner";
 
 template <class Interface, class Class, class Params>
 constexpr PluginEntry make_entry(const char* name, const char* sentence) {
@@ -224,7 +179,7 @@ constexpr PluginEntry make_entry(const char* name, const char* sentence) {
       requires { sizeof(Interface); },
       "include the header of the interface too, such as altiplan/planner.hpp");
   PluginEntry entry{};
-  entry.kind = Kind<Interface>::kName;
+  entry.kind = kKind<Interface>;
   entry.name = name;
   entry.sentence = sentence;
   entry.describe = &describe<Params>;

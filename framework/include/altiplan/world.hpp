@@ -37,11 +37,6 @@ struct Change {
 class ALTIPLAN_API World {
  public:
   World();
-  ~World();
-  World(World&&) noexcept;
-  World& operator=(World&&) noexcept;
-  World(const World&);
-  World& operator=(const World&);
 
   const std::vector<Layer>& layers() const { return layers_; }
   const std::vector<MovingObstacle>& moving() const { return moving_; }

@@ -51,11 +51,11 @@ double width_of(const std::vector<Vec3>& points) {
 }
 
 double outer_of(const std::vector<Vec3>& corners) {
-  double most = 0;
+  double max_norm = 0;
   for (const Vec3& corner : corners) {
-    most = std::max(most, corner.norm());
+    max_norm = std::max(max_norm, corner.norm());
   }
-  return most;
+  return max_norm;
 }
 }  // namespace
 
@@ -106,13 +106,13 @@ BodyPart hull_part(const std::vector<Vec3>& points) {
   }
   // The points farthest in many directions, then those that their hull does not contain.
   std::vector<bool> is_corner(points.size(), false);
-  double least_support = kInfinity;
+  double min_support = kInfinity;
   for (int n = 0; n < kDirections; ++n) {
     const Vec3 along = direction(n);
     const std::size_t first = farthest_index(points, along);
     const std::size_t last = farthest_index(points, -along);
     is_corner[first] = is_corner[last] = true;
-    least_support = std::min(least_support, points[first].dot(along));
+    min_support = std::min(min_support, points[first].dot(along));
   }
   const double outer = outer_of(points);
   BodyPart part;
@@ -134,28 +134,24 @@ BodyPart hull_part(const std::vector<Vec3>& points) {
     throw Error("its convex hull has more than " + std::to_string(kMaxCorners) +
                 " corners: simplify it");
   }
-  part.inner_m = std::max(0.0, least_support - kBetween * outer);
+  part.inner_m = std::max(0.0, min_support - kBetween * outer);
   part.outer_m = outer;
   return part;
 }
 
-double Vehicle::reach_m() const {
-  return body != nullptr ? std::max(radius_m, body->outer_m()) : radius_m;
-}
-
 double Body::inner_m() const {
-  double most = 0;
+  double max_inner = 0;
   for (const BodyPart& part : parts) {
-    most = std::max(most, part.inner_m);
+    max_inner = std::max(max_inner, part.inner_m);
   }
-  return most;
+  return max_inner;
 }
 
 double Body::outer_m() const {
-  double most = 0;
+  double max_outer = 0;
   for (const BodyPart& part : parts) {
-    most = std::max(most, part.outer_m);
+    max_outer = std::max(max_outer, part.outer_m);
   }
-  return most;
+  return max_outer;
 }
 }  // namespace altiplan

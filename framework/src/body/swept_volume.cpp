@@ -66,11 +66,11 @@ bool fcl_meets(const SweptVolume& volume, const Obstacle<Support>& obstacle) {
 /// The farthest of some points.
 const Vec3& farthest(std::span<const Vec3> points, const Vec3& direction) {
   std::size_t best = 0;
-  double most = -kInfinity;
+  double max_along = -kInfinity;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double along = points[i].dot(direction);
-    if (along > most) {
-      most = along;
+    if (along > max_along) {
+      max_along = along;
       best = i;
     }
   }
@@ -194,11 +194,11 @@ SweptVolume::SweptVolume(const BodyPart& part, double outer, std::span<const Pla
 }
 
 Vec3 SweptVolume::support(const Vec3& direction) const {
-  Vec3 most = farthest(points_, direction);
+  Vec3 point = farthest(points_, direction);
   if (rounding_ > 0) {
-    most += rounding_ * direction.normalized();
+    point += rounding_ * direction.normalized();
   }
-  return most + grown_ * direction.cwiseSign();
+  return point + grown_ * direction.cwiseSign();
 }
 
 bool SweptVolume::meets(std::span<const Vec3> corners) const {
@@ -260,11 +260,11 @@ bool meets_by_clearance(const SweptVolume& volume,
     const Vec3 size = box.max - box.min;
     const Vec3 middle = box.min + size / 2;
     const double half = size.norm() / 2;
-    const double least = clearance(middle);
-    if (least >= half) {
+    const double distance = clearance(middle);
+    if (distance >= half) {
       continue;
     }
-    if (2 * half <= tolerance || (least <= 0 && volume.meets(Box{middle, middle}))) {
+    if (2 * half <= tolerance || (distance <= 0 && volume.meets(Box{middle, middle}))) {
       return true;
     }
     int axis = 0;

@@ -47,7 +47,7 @@ int part_count(const Leg& leg, const Sweep& sweep, double spacing) {
 
 /// Branch and bound over pieces of the body's motions. The sphere around the body bounds its
 /// distance from below; short pieces are excluded by the volume that the body sweeps, grown by the
-/// least distance found.
+/// minimum distance found.
 class NearestSearch {
  public:
   NearestSearch(const Route& route, const Request& request)
@@ -64,7 +64,7 @@ class NearestSearch {
         open(layer, sweep, 0, 1);
       }
     }
-    while (!open_.empty() && open_.top().least < best() - tolerance() / 2 && best() > 0) {
+    while (!open_.empty() && open_.top().min_distance < best() - tolerance() / 2 && best() > 0) {
       if (effort_ > kMaxEffort) {
         if (nearest_) {
           nearest_->proven = false;
@@ -83,13 +83,13 @@ class NearestSearch {
   static constexpr double kMaxEffort = 1e5;
 
   struct Piece {
-    double least;  ///< no part of the body is nearer
-    double half;   ///< the reference point is never farther from where it is at the middle
+    double min_distance;  ///< no part of the body is nearer
+    double half;          ///< the reference point is never farther from where it is at the middle
     std::size_t layer;
     std::size_t sweep;
     double begin;
     double end;
-    bool operator<(const Piece& other) const { return least > other.least; }
+    bool operator<(const Piece& other) const { return min_distance > other.min_distance; }
   };
 
   double best() const { return nearest_ ? nearest_->distance : kInfinity; }
@@ -103,9 +103,9 @@ class NearestSearch {
     const auto at = [&](double t) { return places_at(sweeps_[sweep], t).front().at; };
     piece.half = (at(end) - at(begin)).norm() / 2 + 2 * bend_of(piece);
     const double clearance = layers_[layer].environment->clearance(at((begin + end) / 2));
-    piece.least = clearance - piece.half - outer_;
+    piece.min_distance = clearance - piece.half - outer_;
     effort_ += 2;
-    if (piece.least < best()) {
+    if (piece.min_distance < best()) {
       open_.push(piece);
     }
   }

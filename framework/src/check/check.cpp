@@ -50,13 +50,7 @@ auto answer_of(const NamedConstraint& named, const Ask& ask) {
   return attributed([&] { return "the constraint '" + named.name + "'"; },
                     [&] { return ask(*named.constraint); });
 }
-}  // namespace
 
-bool NamedConstraint::admits(const Motion& leg) const {
-  return answer_of(*this, [&](const Constraint& asked) { return asked.admits(leg); });
-}
-
-namespace {
 /// The chords of a route as constraints see them, and the leg of each point; the last point is the
 /// last waypoint.
 Polyline chords_of(const Route& route, std::vector<std::size_t>& leg_of) {

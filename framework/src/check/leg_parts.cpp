@@ -41,9 +41,9 @@ Violation too_near(const Layer* layer, const Leg& leg, const Request& request, s
   std::string where = clearance < 0 ? "lies up to " + fixed(-clearance) + " m inside what '" +
                                           layer->id + "' blocks"
                                     : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
-  if (const auto* says = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
+  if (const auto* reasons = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
     const std::string what =
-        says->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
+        reasons->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
     where += what.empty() ? "" : " (" + what + ")";
   }
   return {"clearance", at, clearance, needed,

@@ -134,17 +134,17 @@ void measure_turns(const Route& route, const Request& request, Measures& m) {
     m.min_radius_m = radius;
   }
 }
-/// The layers by their least clearance from a waypoint: where a near one is measured first, one
+/// The layers by their minimum clearance from a waypoint: where a near one is measured first, one
 /// query a leg shows that the others are further away.
 std::vector<std::pair<double, const Environment*>> nearest_first(const World& world,
                                                                  const Route& route) {
   std::vector<std::pair<double, const Environment*>> layers;
   for (const Layer& layer : world.layers()) {
-    double least = kInfinity;
+    double min_clearance = kInfinity;
     for (std::size_t i = 0; i < route.size(); ++i) {
-      least = std::min(least, layer.environment->clearance(route[i]));
+      min_clearance = std::min(min_clearance, layer.environment->clearance(route[i]));
     }
-    layers.emplace_back(least, layer.environment.get());
+    layers.emplace_back(min_clearance, layer.environment.get());
   }
   std::stable_sort(layers.begin(), layers.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -173,7 +173,7 @@ Measures measure(const Route& route, const Request& request) {
     points.push_back(points.front());
   }
   double clearance = kInfinity;
-  for (const auto& [least, layer] : nearest_first(world, legs)) {
+  for (const auto& [min_clearance, layer] : nearest_first(world, legs)) {
     if (const auto nearest = nearest_leg(*layer, points, clearance)) {
       clearance = nearest->distance;
     }

@@ -54,11 +54,11 @@ double nearest_about(const Ground& ground, const Vec3& p, const Vec3& point) {
 DeepestPlace deepest_place(const Environment& solid, const Vec3& a, const Vec3& b) {
   const double total = (b - a).norm();
   const double tolerance = std::max(1e-3, total * 1e-4);
-  DeepestPlace least{kInfinity, 0};
+  DeepestPlace deepest{kInfinity, 0};
   const auto look = [&](double share) {
     const double here = solid.clearance(a + share * (b - a));
-    if (here < least.clearance) {
-      least = {here, share};
+    if (here < deepest.clearance) {
+      deepest = {here, share};
     }
     return here;
   };
@@ -69,12 +69,12 @@ DeepestPlace deepest_place(const Environment& solid, const Vec3& a, const Vec3& 
     const auto [t0, t1] = open.back();
     open.pop_back();
     const double middle = (t0 + t1) / 2;
-    if (look(middle) - (t1 - t0) / 2 * total < least.clearance - tolerance) {
+    if (look(middle) - (t1 - t0) / 2 * total < deepest.clearance - tolerance) {
       open.emplace_back(t0, middle);
       open.emplace_back(middle, t1);
     }
   }
-  return least;
+  return deepest;
 }
 
 // The legs nearest by the clearance of their midpoints are measured first, and the others only if
@@ -126,12 +126,12 @@ std::optional<NearestLeg> lowest_leg(const World& world, const Polyline& route) 
   });
   std::optional<NearestLeg> lowest;
   for (const auto& [leg, begins] : legs) {
-    const double least = lowest ? lowest->distance : kInfinity;
-    const double gap = world.ground_gap(route[leg], route[leg + 1], least);
+    const double min_gap = lowest ? lowest->distance : kInfinity;
+    const double gap = world.ground_gap(route[leg], route[leg + 1], min_gap);
     if (gap == -kInfinity) {
       return std::nullopt;
     }
-    if (gap < least) {
+    if (gap < min_gap) {
       lowest = {leg, gap};
     }
   }

@@ -42,6 +42,20 @@ bool out_of_range(std::string_view text, T& number) {
   return error == std::errc::result_out_of_range && end == text.data() + text.size();
 }
 
+/// Written as a number of that type.
+template <class T>
+bool is_number(const Value& value, T& number) {
+  return value.kind == Value::Kind::scalar && !value.quoted && is_plain_number(value.text) &&
+         parse_whole(value.text, number);
+}
+
+/// "two numbers, found …", where they are expected in a list.
+std::string expected_list(const char* numbers, const Value& value) {
+  return "expected " + std::string(numbers) + " numbers, found " +
+         (value.kind == Value::Kind::list ? "a list of " + std::to_string(value.items.size())
+                                          : value.what());
+}
+
 /// ".inf", "-Infinity", "NaN", as YAML and other programs write them.
 bool is_not_finite(std::string_view text) {
   text.remove_prefix(text.front() == '-' || text.front() == '+' ? 1 : 0);
@@ -63,8 +77,7 @@ std::optional<double> Fields::read_number(const Value& value, const std::string&
     problem(value, key, "expected a finite number, found " + value.what());
     return std::nullopt;
   }
-  if (value.kind != Value::Kind::scalar || value.quoted || !is_plain_number(value.text) ||
-      !parse_whole(value.text, number)) {
+  if (!is_number(value, number)) {
     problem(value, key, "expected a number, found " + value.what());
     return std::nullopt;
   }
@@ -135,8 +148,7 @@ void Fields::read(const Value& value, std::int64_t& t, const std::string& key, s
     problem(value, key, "the integer is too large, found " + value.what());
     return;
   }
-  if (value.kind != Value::Kind::scalar || value.quoted || !is_plain_number(value.text) ||
-      !parse_whole(value.text, number)) {
+  if (!is_number(value, number)) {
     problem(value, key, "expected an integer, found " + value.what());
     return;
   }
@@ -157,8 +169,7 @@ void Fields::read(const Value& value, AutoNumber& t, const std::string& key, std
     return;
   }
   double number = 0;
-  if (value.kind != Value::Kind::scalar || value.quoted || !is_plain_number(value.text) ||
-      !parse_whole(value.text, number) || !std::isfinite(number)) {
+  if (!is_number(value, number) || !std::isfinite(number)) {
     problem(value, key, "expected a number or auto, found " + value.what());
     return;
   }
@@ -193,10 +204,7 @@ void Fields::read(const Value& value, Path& t, const std::string& key, std::size
 void Fields::read(const Value& value, std::array<double, 2>& t, const std::string& key,
                   std::size_t field) {
   if (value.kind != Value::Kind::list || value.items.size() != 2) {
-    problem(value, key,
-            "expected two numbers, found " +
-                (value.kind == Value::Kind::list ? "a list of " + std::to_string(value.items.size())
-                                                 : value.what()));
+    problem(value, key, expected_list("two", value));
     return;
   }
   for (std::size_t i = 0; i < 2; ++i) {
@@ -207,21 +215,18 @@ void Fields::read(const Value& value, std::array<double, 2>& t, const std::strin
 namespace {
 
 /// "; did you mean [50, 50, 50]?" for one length in place of three.
-std::string thrice(const std::string& text) {
+std::string thrice(const Value& value) {
+  const std::string& text = value.text;
   double number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, number);
-  const bool is_length = error == std::errc() && at == end && number > 0 && std::isfinite(number);
+  const bool is_length = value.kind != Value::Kind::list && parse_whole(text, number) &&
+                         number > 0 && std::isfinite(number);
   return is_length ? "; did you mean [" + text + ", " + text + ", " + text + "]?" : "";
 }
 }  // namespace
 
 void Fields::read(const Value& value, Vec3& t, const std::string& key, std::size_t field) {
   if (value.kind != Value::Kind::list || value.items.size() != 3) {
-    problem(value, key,
-            "expected three numbers, found " +
-                (value.kind == Value::Kind::list ? "a list of " + std::to_string(value.items.size())
-                                                 : value.what() + thrice(value.text)));
+    problem(value, key, expected_list("three", value) + thrice(value));
     return;
   }
   for (int i = 0; i < 3; ++i) {

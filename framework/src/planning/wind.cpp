@@ -3,14 +3,7 @@
 
 #include <algorithm>
 
-#include "altiplan/vehicle.hpp"
-
 namespace altiplan {
-
-double Wing::turn_radius() const {
-  constexpr double kGravity = 9.80665;
-  return airspeed_mps * airspeed_mps / (kGravity * std::tan(bank));
-}
 
 Vec3 Wind::at(double z) const {
   Vec3 velocity(0, 0, 0);

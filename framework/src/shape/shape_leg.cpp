@@ -17,7 +17,7 @@ struct Look {
 
 // Target of a minimum-distance search: the distance itself, …
 struct Exactly {
-  static double most() { return kInfinity; }
+  static double max_distance() { return kInfinity; }
   static bool is_below(double) { return false; }
   static bool is_beyond(double) { return false; }
   static bool is_beyond(const Look&, const Look&, double) { return false; }
@@ -29,7 +29,7 @@ struct Below {
   double limit;
   double rounding;  // of coordinates, metres
 
-  double most() const { return limit + rounding; }  // largest distance that is not beyond
+  double max_distance() const { return limit + rounding; }  // largest distance that is not beyond
   bool is_below(double distance) const { return distance < limit; }
   bool is_beyond(double distance) const { return distance - rounding > limit; }
   // A convex function lies above its tangents, so nowhere below the crossing of these two.
@@ -64,18 +64,18 @@ double convex_leg_distance(const Vec3& a, const Vec3& b, const Goal& goal, const
   if (high.slope <= 0) {
     return high.distance;
   }
-  double least = std::min(low.distance, high.distance);
-  while (least > 0 && high.t - low.t > 1e-16 && !goal.is_below(least) &&
+  double min_distance = std::min(low.distance, high.distance);
+  while (min_distance > 0 && high.t - low.t > 1e-16 && !goal.is_below(min_distance) &&
          !goal.is_beyond(low, high, length)) {
     const double t = (low.t + high.t) / 2;
     const Look middle = look(t, a + t * along);
-    least = std::min(least, middle.distance);
+    min_distance = std::min(min_distance, middle.distance);
     if (std::abs(middle.slope) * (high.t - low.t) <= enough) {
       break;
     }
     (middle.slope > 0 ? high : low) = middle;
   }
-  return least;
+  return min_distance;
 }
 
 // Parameter of the leg a–b at which its plan crosses the edge, or NaN; parallel lines do not cross.
@@ -133,10 +133,11 @@ class LegGap {
 template <class Edges, class Goal>
 double prism_leg_distance(const Prism& prism, const Edges& edges, const Vec3& a, const Vec3& b,
                           const Goal& goal) {
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (const Vec3* p : {&a, &b}) {
     if (edges.covers(p->x(), p->y())) {
-      least = std::min(least, std::max(0.0, interval_distance(prism.floor, prism.ceiling, p->z())));
+      min_distance = std::min(min_distance,
+                              std::max(0.0, interval_distance(prism.floor, prism.ceiling, p->z())));
     }
   }
   for (const double level : {prism.floor, prism.ceiling}) {
@@ -154,26 +155,28 @@ double prism_leg_distance(const Prism& prism, const Edges& edges, const Vec3& a,
     const double gap_y =
         interval_gap(std::min(e[1], f[1]), std::max(e[1], f[1]), leg.min.y(), leg.max.y());
     const double gap = std::max(gap_x, gap_y);
-    if (gap >= least || goal.is_below(least) || goal.is_beyond(gap)) {
+    if (gap >= min_distance || goal.is_below(min_distance) || goal.is_beyond(gap)) {
       return;
     }
     const double t = crossing(a, b, e, f);
     const double z = a.z() + t * (b.z() - a.z());
     if (z >= prism.floor && z <= prism.ceiling) {
-      least = 0;
+      min_distance = 0;
       return;
     }
-    least =
-        std::min(least, convex_leg_distance(a, b, goal, [&](const Vec3& p) {
+    min_distance =
+        std::min(min_distance, convex_leg_distance(a, b, goal, [&](const Vec3& p) {
                    const Point2 q = nearest_on_edge(e, f, p.x(), p.y());
                    return Vec3(q[0], q[1], std::max(prism.floor, std::min(prism.ceiling, p.z())));
                  }));
   };
   const auto limit = [&] {
-    return least == 0 || goal.is_below(least) ? -1.0 : std::min(least, goal.most());
+    return min_distance == 0 || goal.is_below(min_distance)
+               ? -1.0
+               : std::min(min_distance, goal.max_distance());
   };
   edges.visit(LegGap(a, b, prism.floor, prism.ceiling, edges.extent()), limit, look);
-  return least;
+  return min_distance;
 }
 
 template <class Goal>
@@ -344,8 +347,9 @@ double shape_parts::leg_distance(const Indexed& solid, const Vec3& a, const Vec3
 
 bool shape_parts::comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit) {
   constexpr double kRounding = 1e-14;  // of the largest coordinate, with a margin
-  const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) + extent(solid);
-  return distance_of(solid, a, b, Below{limit, kRounding * most}) < limit;
+  const double max_coordinate =
+      std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff()) + extent(solid);
+  return distance_of(solid, a, b, Below{limit, kRounding * max_coordinate}) < limit;
 }
 
 double shape_parts::leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b) {
@@ -356,12 +360,12 @@ double shape_parts::leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b
   Breaks breaks{a, b};
   std::visit(breaks, solid.shape);
   const std::vector<double> shares = breaks.sorted();
-  double least = 0;
+  double min_distance = 0;
   for (std::size_t n = 0; n + 1 < shares.size(); ++n) {
     const double middle = (shares[n] + shares[n + 1]) / 2;
-    least = std::min(least, signed_distance(solid, a + middle * (b - a)));
+    min_distance = std::min(min_distance, signed_distance(solid, a + middle * (b - a)));
   }
-  return -least;
+  return -min_distance;
 }
 
 double leg_distance(const Shape& shape, const Vec3& a, const Vec3& b) {

@@ -21,23 +21,23 @@ double plan_gap(const Edges& edges, const Box& box) {
   }
   const Shape column =
       BoxShape{{{box.min.x(), box.min.y(), -kInfinity}, {box.max.x(), box.max.y(), kInfinity}}};
-  double least = kInfinity;
+  double min_distance = kInfinity;
   const auto gap = [&](const Point2& low, const Point2& high) {
     return std::max(interval_gap(low[0], high[0], box.min.x(), box.max.x()),
                     interval_gap(low[1], high[1], box.min.y(), box.max.y()));
   };
   edges.visit([&](const EdgeTree::Rectangle& node) { return gap(node.min, node.max); },
-              [&] { return least; },
+              [&] { return min_distance; },
               [&](const Point2& e, const Point2& f) {
                 const Point2 low{std::min(e[0], f[0]), std::min(e[1], f[1])};
                 const Point2 high{std::max(e[0], f[0]), std::max(e[1], f[1])};
-                if (gap(low, high) < least) {
+                if (gap(low, high) < min_distance) {
                   const Vec3 from(e[0], e[1], 0);
                   const Vec3 to(f[0], f[1], 0);
-                  least = std::min(least, altiplan::leg_distance(column, from, to));
+                  min_distance = std::min(min_distance, altiplan::leg_distance(column, from, to));
                 }
               });
-  return least;
+  return min_distance;
 }
 
 struct BoxGap {

@@ -95,12 +95,12 @@ class PlainEdges {
   }
   Plan plan_at(double x, double y) const {
     Plan plan;
-    double least2 = kInfinity;
+    double min_squared = kInfinity;
     for_each_edge(prism_, [&](const Point2& e, const Point2& f) {
       const Point2 q = nearest_on_edge(e, f, x, y);
       const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
-      if (distance2 < least2) {
-        least2 = distance2;
+      if (distance2 < min_squared) {
+        min_squared = distance2;
         plan.nearest = q;
       }
       plan.is_inside ^= crosses(e, f, x, y);
@@ -109,21 +109,21 @@ class PlainEdges {
   }
   EdgeTree::Edge nearest(double x, double y) const {
     EdgeTree::Edge nearest{};
-    double least = kInfinity;
+    double min_distance = kInfinity;
     for_each_edge(prism_, [&](const Point2& e, const Point2& f) {
-      if (const double distance = distance_to_edge(e, f, x, y); distance < least) {
-        least = distance;
+      if (const double distance = distance_to_edge(e, f, x, y); distance < min_distance) {
+        min_distance = distance;
         nearest = {e, f};
       }
     });
     return nearest;
   }
   double extent() const {
-    double most = 0;
+    double max_coordinate = 0;
     for_each_edge(prism_, [&](const Point2& e, const Point2&) {
-      most = std::max({most, std::abs(e[0]), std::abs(e[1])});
+      max_coordinate = std::max({max_coordinate, std::abs(e[0]), std::abs(e[1])});
     });
-    return most;
+    return max_coordinate;
   }
   /// Calls visit(from, to) for the edges that may be as near as limit(), and possibly for others.
   template <class Gap, class Limit, class Visit>
@@ -146,7 +146,7 @@ class TreeEdges {
     return {nearest_on_edge(edge.from, edge.to, x, y), covers(x, y)};
   }
   EdgeTree::Edge nearest(double x, double y) const {
-    double least2 = kInfinity;
+    double min_squared = kInfinity;
     std::size_t nearest = 0;
     tree_.visit(
         [&](const EdgeTree::Rectangle& box) {
@@ -154,13 +154,13 @@ class TreeEdges {
           const double gap_y = std::max({0.0, box.min[1] - y, y - box.max[1]});
           return gap_x * gap_x + gap_y * gap_y;
         },
-        [&] { return least2; },
+        [&] { return min_squared; },
         [&](std::size_t index, const EdgeTree::Edge& edge) {
           const Point2 q = nearest_on_edge(edge.from, edge.to, x, y);
           const double distance2 = (x - q[0]) * (x - q[0]) + (y - q[1]) * (y - q[1]);
           // Among edges at the same distance the first, as in a plain loop.
-          if (distance2 < least2 || (distance2 == least2 && index < nearest)) {
-            least2 = distance2;
+          if (distance2 < min_squared || (distance2 == min_squared && index < nearest)) {
+            min_squared = distance2;
             nearest = index;
           }
         });

@@ -11,15 +11,6 @@
 
 namespace altiplan {
 
-double Vehicle::speed_at(double distance_m) const {
-  for (const SpeedNear& near : speed_near) {
-    if (distance_m <= near.within_m) {
-      return near.speed_mps;
-    }
-  }
-  return speed_mps;
-}
-
 Vec3 Site::resolve(const Point& point) const {
   Vec3 p(point.at[0], point.at[1], point.at[2]);
   switch (point.form) {
@@ -59,7 +50,6 @@ Vec3 Site::resolve(const Point& point) const {
 }
 
 Environment::~Environment() = default;
-Ground::~Ground() = default;
 WhatBlocks::~WhatBlocks() = default;
 
 // Layers are queried at finite positions only; any other position counts as blocked.
@@ -80,22 +70,6 @@ void Environment::near(const Vec3& p, double reach, const NearSink& sink) const 
   if (is_finite(p) && !std::isnan(reach)) {
     do_near(p, reach, sink);
   }
-}
-
-std::optional<double> Ground::height(double x, double y) const {
-  return std::isfinite(x) && std::isfinite(y) ? do_height(x, y) : std::nullopt;
-}
-
-std::optional<double> Ground::distance(const Vec3& a, const Vec3& b) const {
-  return is_finite(a) && is_finite(b) ? do_distance(a, b) : std::nullopt;
-}
-
-double Ground::gap(const Vec3& a, const Vec3& b, double enough) const {
-  return is_finite(a) && is_finite(b) ? do_gap(a, b, enough) : -kInfinity;
-}
-
-double Ground::gap_max(const Vec3& a, const Vec3& b) const {
-  return is_finite(a) && is_finite(b) ? do_gap_max(a, b) : kInfinity;
 }
 
 bool Environment::do_blocked(const Vec3& a, const Vec3& b, double r) const {
@@ -166,10 +140,4 @@ bool Environment::do_meets(const SweptVolume& volume) const {
   return meets_by_clearance(
       volume, [this](const Vec3& p) { return do_clearance(p); }, do_over_approximation());
 }
-
-double Ground::do_gap_max(const Vec3&, const Vec3&) const { return kInfinity; }
-std::optional<double> Ground::do_distance(const Vec3&, const Vec3&) const { return std::nullopt; }
-double Ground::do_slope(const Box&) const { return kInfinity; }
-bool Ground::do_is_all() const { return false; }
-const HeightField* Ground::do_height_field() const { return nullptr; }
 }  // namespace altiplan

@@ -16,24 +16,45 @@ struct World::Cache {
     std::shared_ptr<const VoxelGrid> grid;
     std::vector<Layer> layers;
   };
-  std::mutex mutex;
-  std::vector<std::shared_ptr<const VoxelGrid>> grids;
-  std::vector<std::shared_ptr<const DistanceField>> distances;
-  std::vector<Earlier> earlier;
+  /// One grid per spec. They are built without the lock, since layers may take long, throw, or ask
+  /// the world; of two built at once the first is kept.
+  template <class Grid>
+  class Grids {
+   public:
+    template <class Build>
+    std::shared_ptr<const Grid> get(const GridSpec& spec, const Build& build) {
+      auto grid = keep(spec, nullptr);
+      return grid ? grid : keep(spec, build());
+    }
+    std::vector<std::shared_ptr<const Grid>> all() {
+      const std::lock_guard lock(mutex_);
+      return grids_;
+    }
 
-  std::shared_ptr<const VoxelGrid> keep(std::shared_ptr<VoxelGrid> grid) {
-    grid->watch(nullptr);
-    grids.push_back(std::move(grid));
-    return grids.back();
-  }
+   private:
+    /// The grid of the spec; else `built`, which is kept unless it is null.
+    std::shared_ptr<const Grid> keep(const GridSpec& spec, std::shared_ptr<const Grid> built) {
+      const std::lock_guard lock(mutex_);
+      for (const auto& grid : grids_) {
+        if (grid->spec() == spec) {
+          return grid;
+        }
+      }
+      if (built) {
+        grids_.push_back(built);
+      }
+      return built;
+    }
+
+    std::mutex mutex_;
+    std::vector<std::shared_ptr<const Grid>> grids_;
+  };
+  Grids<VoxelGrid> grids;
+  Grids<DistanceField> distances;
+  std::vector<Earlier> earlier;
 };
 
 World::World() : cache_(std::make_shared<Cache>()) {}
-World::~World() = default;
-World::World(World&&) noexcept = default;
-World& World::operator=(World&&) noexcept = default;
-World::World(const World&) = default;
-World& World::operator=(const World&) = default;
 
 const Layer* World::find(std::string_view id) const {
   const auto found = std::find_if(layers_.begin(), layers_.end(),
@@ -45,9 +66,8 @@ World World::next(World world) {
   ++world.revision_;
   const std::shared_ptr<Cache> before = std::move(world.cache_);
   world.cache_ = std::make_shared<Cache>();
-  const std::lock_guard lock(before->mutex);
   world.cache_->earlier = before->earlier;
-  for (const auto& grid : before->grids) {
+  for (const auto& grid : before->grids.all()) {
     std::erase_if(world.cache_->earlier, [&](const Cache::Earlier& earlier) {
       return earlier.grid->spec() == grid->spec();
     });
@@ -114,10 +134,16 @@ World World::with_moving(std::vector<MovingObstacle> moving) const {
   return world;
 }
 
+namespace {
+Box bounds_of(const Layer& layer) {
+  return answer_of(layer, [](const Environment& asked) { return asked.bounds(); });
+}
+}  // namespace
+
 Box World::bounds() const {
   Box all = Box::empty();
   for (const Layer& layer : layers_) {
-    const Box box = layer.environment->bounds();
+    const Box box = bounds_of(layer);
     for (int axis = 0; axis < 3; ++axis) {
       if (std::isfinite(box.min[axis]) && std::isfinite(box.max[axis])) {
         all.min[axis] = std::min(all.min[axis], box.min[axis]);
@@ -135,12 +161,13 @@ Box World::bounds() const {
 }
 
 double World::clearance(const Vec3& p) const {
-  double least = kInfinity;
+  double min_clearance = kInfinity;
   for (const Layer& layer : layers_) {
-    least = std::min(
-        least, answer_of(layer, [&](const Environment& asked) { return asked.clearance(p); }));
+    min_clearance =
+        std::min(min_clearance,
+                 answer_of(layer, [&](const Environment& asked) { return asked.clearance(p); }));
   }
-  return least;
+  return min_clearance;
 }
 
 const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
@@ -206,14 +233,14 @@ std::shared_ptr<VoxelGrid> patched(const VoxelGrid& earlier, const std::vector<L
   Box gone = Box::empty();
   for (const Layer& layer : then) {
     if (!shows(now, layer)) {
-      gone = gone.united(layer.environment->bounds().grown(spec.inflation));
+      gone = gone.united(bounds_of(layer).grown(spec.inflation));
     }
   }
   if (!gone.is_empty()) {
     VoxelGrid fresh(spec);
     fresh.watch(watch);
     for (const Layer& layer : now) {
-      if (layer.environment->bounds().grown(spec.inflation + spec.cell.norm()).overlaps(gone)) {
+      if (bounds_of(layer).grown(spec.inflation + spec.cell.norm()).overlaps(gone)) {
         answer_of(layer, [&](const Environment& asked) { asked.rasterize(fresh); });
       }
     }
@@ -234,40 +261,33 @@ std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec) const {
 }
 
 std::shared_ptr<const VoxelGrid> World::voxels(const GridSpec& spec, const Budget& budget) const {
-  BudgetWatch time(budget);
-  const std::function<void()> watch = [&time] {
-    if (time.spent(0)) {
-      throw BudgetSpent("the occupancy grid was still being built", time.cancelled());
+  return cache_->grids.get(spec, [&] {
+    BudgetWatch time(budget);
+    const std::function<void()> watch = [&time] {
+      if (time.spent(0)) {
+        throw BudgetSpent("the occupancy grid was still being built", time.cancelled());
+      }
+    };
+    std::shared_ptr<VoxelGrid> grid;
+    for (const Cache::Earlier& earlier : cache_->earlier) {
+      if (earlier.grid->spec() == spec) {
+        grid = patched(*earlier.grid, earlier.layers, layers_, watch);
+      }
     }
-  };
-  const std::lock_guard lock(cache_->mutex);
-  for (const auto& grid : cache_->grids) {
-    if (grid->spec() == spec) {
-      return grid;
+    if (grid == nullptr) {
+      grid = std::make_shared<VoxelGrid>(spec);
+      grid->watch(watch);
+      for (const Layer& layer : layers_) {
+        answer_of(layer, [&](const Environment& asked) { asked.rasterize(*grid); });
+      }
     }
-  }
-  for (const Cache::Earlier& earlier : cache_->earlier) {
-    if (earlier.grid->spec() == spec) {
-      return cache_->keep(patched(*earlier.grid, earlier.layers, layers_, watch));
-    }
-  }
-  auto grid = std::make_shared<VoxelGrid>(spec);
-  grid->watch(watch);
-  for (const Layer& layer : layers_) {
-    answer_of(layer, [&](const Environment& asked) { asked.rasterize(*grid); });
-  }
-  return cache_->keep(std::move(grid));
+    grid->watch(nullptr);
+    return grid;
+  });
 }
 
 std::shared_ptr<const DistanceField> World::distances(const GridSpec& spec) const {
-  const auto grid = voxels(spec);
-  const std::lock_guard lock(cache_->mutex);
-  for (const auto& field : cache_->distances) {
-    if (field->spec() == spec) {
-      return field;
-    }
-  }
-  cache_->distances.push_back(std::make_shared<const DistanceField>(*grid));
-  return cache_->distances.back();
+  return cache_->distances.get(
+      spec, [&] { return std::make_shared<const DistanceField>(*voxels(spec)); });
 }
 }  // namespace altiplan

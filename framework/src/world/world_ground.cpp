@@ -56,7 +56,7 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
                      [&](const Ground& asked) { return asked.gap(a, b, enough); });
   }
   // Neighbouring tiles: each answers for its part of the leg, and together they must cover it.
-  double least = kInfinity;
+  double min_gap = kInfinity;
   std::vector<std::pair<double, double>> parts;
   for (const auto& ground : grounds_) {
     const Box box = layers_[ground.first].environment->bounds();
@@ -66,9 +66,9 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
     }
     const Vec3 enter = on_leg(a, b, t0, box);
     const Vec3 leave = on_leg(a, b, t1, box);
-    least = std::min(least, answer_of(layers_, ground, [&](const Ground& asked) {
-                       return asked.gap(enter, leave, enough);
-                     }));
+    min_gap = std::min(min_gap, answer_of(layers_, ground, [&](const Ground& asked) {
+                         return asked.gap(enter, leave, enough);
+                       }));
     parts.emplace_back(t0, t1);
   }
   std::sort(parts.begin(), parts.end());
@@ -79,7 +79,7 @@ double World::ground_gap(const Vec3& a, const Vec3& b, double enough) const {
     }
     covered = std::max(covered, t1);
   }
-  return !parts.empty() && covered >= 1 ? least : -kInfinity;
+  return !parts.empty() && covered >= 1 ? min_gap : -kInfinity;
 }
 
 bool World::ground_below(const Vec3& a, const Vec3& b) const {
@@ -108,7 +108,7 @@ double World::ground_slope(const Box& box) const {
 }
 
 double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
-  double most = -kInfinity;
+  double max_gap = -kInfinity;
   bool covered = false;
   for (const auto& ground : grounds_) {
     const Box box = layers_[ground.first].environment->bounds();
@@ -117,11 +117,11 @@ double World::ground_gap_max(const Vec3& a, const Vec3& b) const {
       const Vec3 enter = on_leg(a, b, t0, box);
       const Vec3 leave = on_leg(a, b, t1, box);
       covered = true;
-      most = std::max(most, answer_of(layers_, ground, [&](const Ground& asked) {
-                        return asked.gap_max(enter, leave);
-                      }));
+      max_gap = std::max(max_gap, answer_of(layers_, ground, [&](const Ground& asked) {
+                           return asked.gap_max(enter, leave);
+                         }));
     }
   }
-  return covered ? most : kInfinity;
+  return covered ? max_gap : kInfinity;
 }
 }  // namespace altiplan

@@ -48,6 +48,7 @@ class Altitude final : public Constraint {
     band.max = params_.max_m.value_or(kInfinity) + shift;
     limits.altitude.push_back(band);
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

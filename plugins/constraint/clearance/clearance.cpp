@@ -34,6 +34,7 @@ class Clearance final : public Constraint {
   void do_tighten(Limits& limits, const Request&) const override {
     limits.min_clearance = std::max(limits.min_clearance, params_.min_m);
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

@@ -32,6 +32,7 @@ class ClimbAngle final : public Constraint {
     limits.max_sink = std::min(limits.max_descent(), sink);
     limits.max_climb = std::min(limits.max_climb, radians(params_.max_deg));
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

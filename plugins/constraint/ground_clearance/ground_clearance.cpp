@@ -35,6 +35,7 @@ class GroundClearance final : public Constraint {
     limits.min_ground_clearance =
         std::max(params_.min_m, limits.min_ground_clearance.value_or(-kInfinity));
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

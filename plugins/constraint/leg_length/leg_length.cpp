@@ -30,6 +30,7 @@ class LegLength final : public Constraint {
     limits.min_leg = std::max(limits.min_leg, params_.min_m.value_or(0));
     limits.max_leg = std::min(limits.max_leg, params_.max_m.value_or(kInfinity));
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

@@ -33,6 +33,7 @@ class RouteLength final : public Constraint {
     const double longest = params_.max_m ? *params_.max_m : *params_.max_ratio * straight;
     limits.max_route_length = std::min(limits.max_route_length, longest);
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

@@ -35,6 +35,7 @@ class TurnAngle final : public Constraint {
         params_.plane == Plane::spatial ? limits.max_turn_space : limits.max_turn_horizontal;
     limit = std::min(limit, radians(params_.max_deg));
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

@@ -27,6 +27,7 @@ class TurnRadius final : public Constraint {
   void do_tighten(Limits& limits, const Request&) const override {
     limits.min_turn_radius = std::max(limits.min_turn_radius, params_.min_m);
   }
+  bool do_admits_all() const override { return true; }
 
   Params params_;
 };

@@ -5,7 +5,7 @@
 namespace {
 constexpr altiplan::Manifest of_another_api() {
   altiplan::Manifest manifest =
-      altiplan::make_manifest<altiplan::Constraint>("constraint", "zeta", "of another API");
+      altiplan::make_manifest("constraint", "zeta", "of another API");
   ++manifest.api_major;
   manifest.checksum = checksum_of(manifest);
   return manifest;

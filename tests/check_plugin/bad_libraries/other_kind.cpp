@@ -10,7 +10,7 @@ class Eta final : public altiplan::Constraint {
 };
 
 __attribute__((section("altiplan_manifest"), used)) constinit const altiplan::Manifest kManifest =
-    altiplan::make_manifest<altiplan::Planner>("smoother", "eta", "is something else");
+    altiplan::make_manifest("smoother", "eta", "is something else");
 constinit const altiplan::PluginEntry kEntry =
     altiplan::detail::make_entry<altiplan::Constraint, Eta, altiplan::NoParams>("eta", "is so");
 __attribute__((section("altiplan_entries"), used)) const altiplan::PluginEntry* const kAt = &kEntry;

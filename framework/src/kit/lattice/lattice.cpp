@@ -55,9 +55,11 @@ void expect_useful(const Vec3& cell, const Box& box) {
 }
 
 void expect_few(const std::array<double, 3>& counts, const LatticeMemory& memory) {
+  constexpr double kMaxAlongAxis = 1e9;  // indices are ints
   const double total = counts[0] * counts[1] * counts[2];
   const double bytes = total * double(memory.bytes_per_cell);
-  if (!(bytes <= double(memory.max_bytes)) || total > 4e9) {
+  const bool fits = bytes <= double(memory.max_bytes) && total <= 4e9;
+  if (!fits || std::max({counts[0], counts[1], counts[2]}) > kMaxAlongAxis) {
     const double mb = 1.0 / (1024 * 1024);
     const auto whole = [](double value) { return std::to_string(std::int64_t(value)); };
     const double allowed_mb = double(memory.max_bytes) * mb;
@@ -67,6 +69,11 @@ void expect_few(const std::array<double, 3>& counts, const LatticeMemory& memory
     const std::string cells =
         total < 1e18 ? whole(counts[0]) + " x " + whole(counts[1]) + " x " + whole(counts[2])
                      : std::string("more than 1e18");
+    if (fits) {
+      throw ParameterError("cell_m", "the lattice would have " + cells +
+                                         " cells; allowed are 1e9 along an axis: choose larger "
+                                         "cells or a smaller volume");
+    }
     const std::string needed = total < 1e18 ? whole(std::ceil(bytes * mb)) : "far too many";
     throw ParameterError("cell_m", "the lattice would have " + cells + " cells, which need " +
                                        needed + " MB; allowed are " + allowed +
