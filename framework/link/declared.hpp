@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -18,6 +20,31 @@ struct Declared {
   std::uint32_t id;
   const char* name;
 };
+
+/// Marks in the list of a message's fields where its extensions begin.
+inline constexpr struct Extensions {
+} kExtensions;
+
+/// Calls `visit(name, field)` for each of the fields, and `visit.extensions()` at that mark;
+/// `names` are those of the fields, separated by ", ".
+void visit_fields(auto& visit, std::string_view names, auto&... fields) {
+  const auto one = [&](auto& field) {
+    const std::string_view name = names.substr(0, names.find(','));
+    names.remove_prefix(std::min(names.size(), name.size() + 2));
+    if constexpr (std::is_same_v<decltype(field), const Extensions&>) {
+      visit.extensions();
+    } else {
+      visit(name, field);
+    }
+  };
+  (one(fields), ...);
+}
+
+/// Declares a struct to be a message: its number, its name, and its fields in the order of the
+/// definition. All else follows from that and the types of the fields.
+#define ALTIPLAN_MESSAGE(id, name, ...)          \
+  static constexpr Declared kDeclared{id, name}; \
+  void describe(auto& visit) { visit_fields(visit, #__VA_ARGS__, __VA_ARGS__); }
 
 /// A field of a message as its definition lists it, and its position in the payload.
 struct Field {
@@ -66,12 +93,12 @@ struct FieldList {
 
   void extensions() { in_extensions = true; }
   template <class T>
-  void operator()(const char* name, const T& /*value*/) {
-    fields.push_back({type_name<T>(), name, sizeof(T), 0, in_extensions});
+  void operator()(std::string_view name, const T& /*value*/) {
+    fields.push_back({type_name<T>(), std::string(name), sizeof(T), 0, in_extensions});
   }
   template <class T, std::size_t N>
-  void operator()(const char* name, const std::array<T, N>& /*value*/) {
-    fields.push_back({type_name<T>(), name, sizeof(T), N, in_extensions});
+  void operator()(std::string_view name, const std::array<T, N>& /*value*/) {
+    fields.push_back({type_name<T>(), std::string(name), sizeof(T), N, in_extensions});
   }
 };
 
@@ -96,7 +123,7 @@ struct FieldCopier {
 
   void extensions() {}
   template <class T>
-  void operator()(const char* /*name*/, T& value) {
+  void operator()(std::string_view /*name*/, T& value) {
     copy(layout.fields[index++].offset, &value, sizeof value);
   }
 };

@@ -34,8 +34,8 @@ Endpoint read_endpoint(const std::string& text) {
   }
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data() + last + 1, end, endpoint.number);
-  const int most = endpoint.kind == Endpoint::Kind::serial ? 4'000'000 : 65'535;
-  if (error != std::errc() || stop != end || endpoint.number < 1 || endpoint.number > most) {
+  const int max_number = endpoint.kind == Endpoint::Kind::serial ? 4'000'000 : 65'535;
+  if (error != std::errc() || stop != end || endpoint.number < 1 || endpoint.number > max_number) {
     refuse(text);
   }
   if (endpoint.kind == Endpoint::Kind::udp_in && endpoint.host.empty()) {

@@ -33,12 +33,12 @@ void detach() {
   }
 }
 
-[[noreturn]] void watch(int pipe, const std::function<void()>& hold, Time patience) {
+[[noreturn]] void watch(int pipe, const std::function<void()>& hold, Time max_silence) {
   bool is_commanding = false;
   std::array<char, 256> words;
   while (true) {
     pollfd ready{pipe, POLLIN, 0};
-    const int timeout = is_commanding ? static_cast<int>(patience.count()) : -1;
+    const int timeout = is_commanding ? static_cast<int>(max_silence.count()) : -1;
     const int events = ::poll(&ready, 1, timeout);
     const ssize_t size = events > 0 ? ::read(pipe, words.data(), words.size()) : -1;
     if (size > 0) {
@@ -59,7 +59,7 @@ void detach() {
 }
 }  // namespace
 
-Guardian::Guardian(const std::function<void()>& hold, Time patience) {
+Guardian::Guardian(const std::function<void()>& hold, Time max_silence) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     fail("pipe");
@@ -69,7 +69,7 @@ Guardian::Guardian(const std::function<void()>& hold, Time patience) {
     ::close(ends[1]);
     detach();
     try {
-      watch(ends[0], hold, patience);
+      watch(ends[0], hold, max_silence);
     } catch (const std::exception&) {  // the link is gone too
     }
     ::_exit(1);

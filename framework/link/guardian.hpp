@@ -14,7 +14,7 @@ namespace altiplan::link {
 class Guardian {
  public:
   /// `patience`: between calls of commanding(). Throws MachineFault if there can be no process.
-  Guardian(const std::function<void()>& hold, Time patience);
+  Guardian(const std::function<void()>& hold, Time max_silence);
   /// The same as dying.
   ~Guardian();
   Guardian(const Guardian&) = delete;

@@ -96,7 +96,7 @@ void LinkedVehicle::hand_back(int item) {
 
 void LinkedVehicle::ask(FlightMode mode) {
   if (++asks_ > kMaxAsks) {
-    give_up("the vehicle does not change its mode, " + feed_.mode_name() + feed_.said());
+    give_up("the vehicle does not change its mode, " + feed_.mode_name() + feed_.quoted_text());
   }
   feed_.send(feed_.request(mode));
   ask_at_ = time_now() + kAskAgain;

@@ -158,7 +158,7 @@ void LinkedVehicle::expect_done(const CommandLong& command, const std::string& w
           return;
         }
         await_words();
-        give_up("the vehicle refuses " + what + feed_.said());
+        give_up("the vehicle refuses " + what + feed_.quoted_text());
       }
     }
   }
@@ -247,10 +247,10 @@ void LinkedVehicle::expect_in_reach() {
   if (!is_flying_ || (feed_.is_armed() && is_in_own_mode())) {
     strange_since_.reset();
   } else if (time_now() > strange_since_.value_or(time_now()) + kStrange) {
-    give_up(feed_.is_armed()
-                ? "the vehicle is in the mode " + feed_.mode_name() +
-                      ", which this flight has not asked for: it is left alone" + feed_.said()
-                : "the vehicle has disarmed" + feed_.said());
+    give_up(feed_.is_armed() ? "the vehicle is in the mode " + feed_.mode_name() +
+                                   ", which this flight has not asked for: it is left alone" +
+                                   feed_.quoted_text()
+                             : "the vehicle has disarmed" + feed_.quoted_text());
   } else {
     strange_since_ = strange_since_.value_or(time_now());
   }

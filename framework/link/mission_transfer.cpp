@@ -105,8 +105,8 @@ Messages MissionTransfer::expect_answer(Time now, Messages messages, Time timeou
 /// without progress: a vehicle that always stops at the same item fails in the end.
 void MissionTransfer::advance(Time now, std::size_t count) {
   through_ = count;
-  if (count > most_through_) {
-    most_through_ = count;
+  if (count > max_through_) {
+    max_through_ = count;
     broken_off_ = 0;
     deadline_ = now + kProgressTimeout;
   } else {

@@ -89,7 +89,7 @@ class MissionTransfer {
   int retries_ = 0;
   Time deadline_{0};
   Time last_advance_{0};
-  std::size_t most_through_ = 0;
+  std::size_t max_through_ = 0;
   int broken_off_ = 0;  ///< times, by the vehicle
   std::optional<MissionResult> broken_off_by_;
 };

@@ -71,7 +71,7 @@ std::string VehicleFeed::mode_name() const { return mode_in_words(vehicle_.heart
 
 bool VehicleFeed::is_armed() const { return (vehicle_.heartbeat.base_mode & kArmedFlag) != 0; }
 
-std::string VehicleFeed::said() const { return text_.empty() ? "" : " (\"" + text_ + "\")"; }
+std::string VehicleFeed::quoted_text() const { return text_.empty() ? "" : " (\"" + text_ + "\")"; }
 
 void VehicleFeed::send(const CommandLong& command) {
   results_.erase(command.command);

@@ -38,7 +38,7 @@ class VehicleFeed {
   /// True if its clock has gone back.
   bool has_restarted() const { return has_restarted_; }
   /// Its last status text, in words of its own: " (\"PreArm: …\")", "" if there is none.
-  std::string said() const;
+  std::string quoted_text() const;
 
   /// Sends a command; acknowledged() is then about this one.
   void send(const CommandLong& command);

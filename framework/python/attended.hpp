@@ -28,9 +28,9 @@ class Outcome {
     set([&] { error_ = std::move(error); });
   }
   /// True once there is one.
-  bool wait(std::chrono::milliseconds most) {
+  bool wait(std::chrono::milliseconds max_wait) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, most, [&] { return is_there_; });
+    return changed_.wait_for(lock, max_wait, [&] { return is_there_; });
   }
   T take() {
     const std::lock_guard lock(mutex_);
@@ -86,7 +86,7 @@ T attended(std::function<T(const std::shared_ptr<Outcome<T>>&, const std::stop_t
     }
   });
   const auto raised =
-      attend([&](std::chrono::milliseconds most) { return outcome->wait(most); }, stop);
+      attend([&](std::chrono::milliseconds max_wait) { return outcome->wait(max_wait); }, stop);
   if (outcome->is_finished()) {
     const py::gil_scoped_release released;
     thread.join();

@@ -92,7 +92,7 @@ Plan plan_of(const RunCall&, const host::Config&, const host::RunResult& run) {
 /// `made_of` makes what is handed over.
 template <class T>
 T run(const RunCall& call,
-      T (*made_of)(const RunCall&, const host::Config&, const host::RunResult&)) {
+      T (*convert)(const RunCall&, const host::Config&, const host::RunResult&)) {
   return attended<T>([=](const std::shared_ptr<Outcome<T>>& outcome, const std::stop_token& stop) {
     const host::Config config = call.may_be_scenario ? host::load_plan(call.file, call.overrides)
                                                      : host::load_config(call.file, call.overrides);
@@ -110,7 +110,7 @@ T run(const RunCall& call,
     // its thread.
     options.on_stuck = [&](const host::RunResult& so_far) {
       try {
-        outcome->give(made_of(call, config, so_far));
+        outcome->give(convert(call, config, so_far));
       } catch (...) {
         outcome->fail(std::current_exception());
       }
@@ -118,7 +118,7 @@ T run(const RunCall& call,
         ::pause();
       }
     };
-    return made_of(call, config, host::run(config, options));
+    return convert(call, config, host::run(config, options));
   });
 }
 

@@ -42,54 +42,55 @@ std::string test_words(const std::vector<double>& differences) {
 }
 
 TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) {
-  TunedComparison made;
+  TunedComparison comparison;
   std::vector<double> before;
   std::vector<double> now;
   std::vector<double> differences;
   for (std::size_t s = from; s < to; ++s) {
     const ScoredRun& first = tuning.as_it_is().runs[s];
     const ScoredRun& second = tuning.tuned().runs[s];
-    ++made.scenarios;
-    made.failed_before += !first.value;
-    made.failed_now += !second.value;
+    ++comparison.scenarios;
+    comparison.failed_before += !first.value;
+    comparison.failed_now += !second.value;
     if (first.value && second.value) {
       before.push_back(*first.value);
       now.push_back(*second.value);
       differences.push_back(*second.value - *first.value);
-      made.better += differences.back() < 0;
-      made.worse += differences.back() > 0;
-      made.equal += differences.back() == 0;
+      comparison.better += differences.back() < 0;
+      comparison.worse += differences.back() > 0;
+      comparison.equal += differences.back() == 0;
     }
   }
-  made.mean_before = study::mean(before);
-  made.mean_now = study::mean(now);
-  if (made.scenarios == 0) {
-    return made;
+  comparison.mean_before = study::mean(before);
+  comparison.mean_now = study::mean(now);
+  if (comparison.scenarios == 0) {
+    return comparison;
   }
-  made.words = "better in " + std::to_string(made.better) + ", worse in " +
-               std::to_string(made.worse) + " and equal in " + std::to_string(made.equal) + " of " +
-               counted(made.scenarios, "scenario");
-  if (made.failed_before + made.failed_now > 0) {
-    made.words += " (original fails in " + std::to_string(made.failed_before) + ", tuned in " +
-                  std::to_string(made.failed_now) + ")";
+  comparison.words = "better in " + std::to_string(comparison.better) + ", worse in " +
+                     std::to_string(comparison.worse) + " and equal in " +
+                     std::to_string(comparison.equal) + " of " +
+                     counted(comparison.scenarios, "scenario");
+  if (comparison.failed_before + comparison.failed_now > 0) {
+    comparison.words += " (original fails in " + std::to_string(comparison.failed_before) +
+                        ", tuned in " + std::to_string(comparison.failed_now) + ")";
   }
-  made.words += differences.empty() ? "" : "; " + test_words(differences);
-  return made;
+  comparison.words += differences.empty() ? "" : "; " + test_words(differences);
+  return comparison;
 }
 
-host::Json json_of(const TunedComparison& made) {
+host::Json json_of(const TunedComparison& comparison) {
   const auto number = [](double value) {
     return std::isfinite(value) ? host::Json(value) : host::Json();
   };
-  return {{"scenarios", made.scenarios},
-          {"failed_as_it_is", made.failed_before},
-          {"failed_tuned", made.failed_now},
-          {"better", made.better},
-          {"worse", made.worse},
-          {"equal", made.equal},
-          {"mean_as_it_is", number(made.mean_before)},
-          {"mean_tuned", number(made.mean_now)},
-          {"words", made.words}};
+  return {{"scenarios", comparison.scenarios},
+          {"failed_as_it_is", comparison.failed_before},
+          {"failed_tuned", comparison.failed_now},
+          {"better", comparison.better},
+          {"worse", comparison.worse},
+          {"equal", comparison.equal},
+          {"mean_as_it_is", number(comparison.mean_before)},
+          {"mean_tuned", number(comparison.mean_now)},
+          {"words", comparison.words}};
 }
 
 /// The part of an assignment after '='.
@@ -186,15 +187,15 @@ TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning) {
   summary.tuned_on = compare(tuning, 0, plan.tuned_on);
   summary.held_back = compare(tuning, plan.tuned_on, plan.scenarios.size());
   summary.evaluations = tuning.evaluations.size() - 1;
-  double least = kInfinity;
+  double min_score = kInfinity;
   for (std::size_t i = 1; i < tuning.evaluations.size(); ++i) {
-    least = std::min(least, tuning.evaluations[i].score);
+    min_score = std::min(min_score, tuning.evaluations[i].score);
   }
   for (std::size_t i = 1; i < tuning.evaluations.size(); ++i) {
     const Evaluation& evaluation = tuning.evaluations[i];
     summary.failed += evaluation.failed > 0;
     summary.on_plateau +=
-        std::isfinite(least) && evaluation.score <= least + 1e-9 * std::abs(least);
+        std::isfinite(min_score) && evaluation.score <= min_score + 1e-9 * std::abs(min_score);
   }
   return summary;
 }

@@ -110,13 +110,13 @@ class TuningRun {
     evaluate(0, 0, plan_.tuned_on);
     expect_values();
     const auto search = of_tuner(plan_, [&] { return plan_.tuner->begin(plan_.space(), random); });
-    const std::int64_t most =
+    const std::int64_t max_evaluations =
         plan_.request.evaluations.value_or(std::numeric_limits<std::int64_t>::max());
     for (std::size_t iteration = 1;; ++iteration) {
       const auto batch = of_tuner(plan_, [&] { return search->ask(); });
       const std::size_t first = tuning_.evaluations.size();
       for (const std::vector<double>& point : batch) {
-        if (std::int64_t(tuning_.evaluations.size()) <= most) {
+        if (std::int64_t(tuning_.evaluations.size()) <= max_evaluations) {
           Evaluation evaluation;
           evaluation.iteration = iteration;
           evaluation.assignments = plan_.assignments(point);

@@ -143,7 +143,7 @@ TEST_F(StudyWorker, EveryEnding) {
   EXPECT_EQ(told(Ending::exited),
             "crashed: the planner 'x' (steps.0) ended the process with exit code 3");
   ended.signal = SIGKILL;
-  ended.said = "one\n\x1b[31m\xff two\n\n";
+  ended.output = "one\n\x1b[31m\xff two\n\n";
   EXPECT_EQ(told(Ending::killed),
             "crashed: the planner 'x' (steps.0) was killed by SIGKILL; last output: one "
             "[31m\xEF\xBF\xBD two");

@@ -227,8 +227,8 @@ TEST_P(Faults, FloodsStderr) {
     }
   });
   EXPECT_EQ(ended.how, Ending::wall_limit);
-  EXPECT_LE(ended.said.size(), 2048U);
-  EXPECT_NE(ended.said.find("and on and on"), std::string::npos);
+  EXPECT_LE(ended.output.size(), 2048U);
+  EXPECT_NE(ended.output.find("and on and on"), std::string::npos);
 }
 }  // namespace
 }  // namespace altiplan::host

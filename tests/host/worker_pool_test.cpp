@@ -65,7 +65,7 @@ TEST_P(Faults, EveryFatalSignal) {
     EXPECT_EQ(ended.how, Ending::killed) << number;
     EXPECT_EQ(ended.signal, number);
     EXPECT_EQ(ended.note, "job 4 is at work");
-    EXPECT_EQ(ended.said, "these are my crash report");
+    EXPECT_EQ(ended.output, "these are my crash report");
     EXPECT_EQ(ended.crash_report, "left in a file");
   }
 }

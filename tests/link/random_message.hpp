@@ -15,7 +15,7 @@ struct RandomFields {
   double zeros;
 
   void extensions() {}
-  void operator()(const char* /*name*/, auto& value) { fill(value); }
+  void operator()(std::string_view /*name*/, auto& value) { fill(value); }
 
   template <class T, std::size_t N>
   void fill(std::array<T, N>& values) {

@@ -128,18 +128,15 @@ int check_route(const CheckArguments& arguments) {
 /// A mission in a world that options describe, in place of a scenario.
 void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
   const auto metres = [&](const char* name, auto& value, const char* what) {
-    command.add_option(name, value, what)
-        ->type_name("METRES")
+    command.add_option(std::string(name) + " METRES", value, what)
         ->check(number_from(0, 1e5))
         ->needs(terrain);
   };
-  command.add_option("--airspace", plan.airspace, "zones over it; repeatable")
-      ->type_name("FILE")
+  command.add_option("--airspace FILE", plan.airspace, "zones over it; repeatable")
       ->take_all()
       ->one_at_a_time()
       ->needs(terrain);
-  command.add_option("--crs", plan.crs, "coordinate system of a model that names none")
-      ->type_name("EPSG:CODE")
+  command.add_option("--crs EPSG:CODE", plan.crs, "coordinate system of a model that names none")
       ->needs(terrain);
   command
       .add_flag("--permission", plan.has_permission,
@@ -157,14 +154,12 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
   metres("--max-distance", plan.max_ground_distance_m,
          "greatest distance from the nearest point of the ground (m)");
   command
-      .add_option("--start-time", plan.start_time,
+      .add_option("--start-time TIME", plan.start_time,
                   "UTC, 2026-05-01T10:00:00Z: for zones with hours")
-      ->type_name("TIME")
       ->needs(terrain);
   command
-      .add_option("--speed", plan.speed_mps,
+      .add_option("--speed M/S", plan.speed_mps,
                   "where the mission gives no speed, for zones with hours (m/s, default 5)")
-      ->type_name("M/S")
       ->check(number_from(0.01, 1000))
       ->needs(terrain);
 }
@@ -172,7 +167,7 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
 /// What is written besides the verdict; returns the options.
 std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
   const auto file = [&](const char* name, std::optional<std::string>& value, const char* what) {
-    return command.add_option(name, value, what)->type_name("FILE");
+    return command.add_option(std::string(name) + " FILE", value, what);
   };
   return {file("--certificate", plan.certificate,
                "also write the verdict as a page (HTML) with the height profile"),
@@ -215,44 +210,41 @@ void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>&
 }  // namespace
 
 void add_check(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("check", "judge a mission (.plan, .waypoints, …), a result or a route");
-  auto arguments = std::make_shared<CheckArguments>();
+  auto outputs = std::make_shared<std::vector<Option*>>();
+  const auto prepare = [outputs](CheckArguments& given) {
+    expect_fitting(given, *outputs);
+    given.plan.plan = given.result.value_or("");
+  };
+  const auto check = [](const CheckArguments& given) {
+    return is_plan(given) ? check_plan(given.plan, given.overrides)
+           : given.result ? check_result(given)
+                          : check_route(given);
+  };
+  auto [command, arguments] = add_command<CheckArguments>(
+      app, action, "check", "judge a mission (.plan, .waypoints, …), a result or a route", check,
+      prepare);
   auto* result =
-      command->add_option("file", arguments->result,
-                          "result file of altiplan run (JSON), or with --terrain or --scenario a "
-                          "mission (.plan, .waypoints, .kml, .gpx, .geojson)");
+      command.add_option("file", arguments.result,
+                         "result file of altiplan run (JSON), or with --terrain or --scenario a "
+                         "mission (.plan, .waypoints, .kml, .gpx, .geojson)");
   auto* route = command
-                    ->add_option("--route", arguments->route,
-                                 "route file: JSON ([[x, y, z], …] in metres, or a result), CSV, "
-                                 "or a mission")
-                    ->type_name("FILE")
+                    .add_option("--route FILE", arguments.route,
+                                "route file: JSON ([[x, y, z], …] in metres, or a result), CSV, "
+                                "or a mission")
                     ->excludes(result);
-  auto* scenario = command
-                       ->add_option("--scenario", arguments->plan.scenario,
-                                    "scenario file in which to judge the route (YAML)")
-                       ->type_name("FILE");
+  auto* scenario = command.add_option("--scenario FILE", arguments.plan.scenario,
+                                      "scenario file in which to judge the route (YAML)");
   auto* terrain =
       command
-          ->add_option("--terrain", arguments->plan.terrain,
-                       "elevation model over which to judge a mission, without a scenario")
-          ->type_name("FILE")
+          .add_option("--terrain FILE", arguments.plan.terrain,
+                      "elevation model over which to judge a mission, without a scenario")
           ->excludes(scenario)
           ->needs(result);
   route->needs(scenario);
-  add_world_options(*command, terrain, arguments->plan);
-  const std::vector<Option*> outputs = add_outputs(*command, arguments->plan);
-  add_plugin_path(*command, arguments->overrides);
-  command->add_flag("--json", arguments->plan.json, "print as JSON");
-  set_example(*command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");
-  command->callback([&action, arguments, outputs] {
-    expect_fitting(*arguments, outputs);
-    arguments->plan.plan = arguments->result.value_or("");
-    action = [arguments] {
-      return is_plan(*arguments) ? check_plan(arguments->plan, arguments->overrides)
-             : arguments->result ? check_result(*arguments)
-                                 : check_route(*arguments);
-    };
-  });
+  add_world_options(command, terrain, arguments.plan);
+  *outputs = add_outputs(command, arguments.plan);
+  add_plugin_path(command, arguments.overrides);
+  command.add_flag("--json", arguments.plan.json, "print as JSON");
+  set_example(command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");
 }
 }  // namespace altiplan::cli

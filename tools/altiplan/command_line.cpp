@@ -26,6 +26,9 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
+/// "-o,--out" of "-o,--out FILE".
+std::string without_type(const std::string& names) { return names.substr(0, names.find(' ')); }
+
 /// The options of the command that was called, with their dashes.
 std::vector<std::string> options_of(const CLI::App& app) {
   std::vector<std::string> names;
@@ -97,11 +100,6 @@ Check Check::one_of(const std::vector<std::string>& words) {
 
 Option* Option::required() {
   option_->required();
-  return this;
-}
-
-Option* Option::type_name(const std::string& name) {
-  option_->type_name(name);
   return this;
 }
 
@@ -185,7 +183,10 @@ App::App(CLI::App* subcommand) : app_(subcommand) {}
 
 App::~App() = default;
 
-Option* App::keep(CLI::Option* option) {
+Option* App::keep(CLI::Option* option, const std::string& names) {
+  if (const std::size_t space = names.find(' '); space != names.npos) {
+    option->type_name(names.substr(space + 1));
+  }
   return options_.emplace_back(std::make_unique<Option>(option)).get();
 }
 
@@ -196,7 +197,7 @@ App* App::add_subcommand(const std::string& name, const std::string& description
 
 template <class Value>
 Option* App::add_option(const std::string& names, Value& value, const std::string& description) {
-  return keep(app_->add_option(names, value, description));
+  return keep(app_->add_option(without_type(names), value, description), names);
 }
 
 #define ALTIPLAN_OPTION(...) \
@@ -220,12 +221,13 @@ ALTIPLAN_OPTION(std::optional<std::size_t>);
 Option* App::add_option_function(const std::string& name,
                                  const std::function<std::string(const std::string&)>& take,
                                  const std::string& description) {
-  const std::function<void(const std::string&)> call = [name, take](const std::string& text) {
+  const std::function<void(const std::string&)> call = [name = without_type(name),
+                                                        take](const std::string& text) {
     if (const std::string problem = take(text); !problem.empty()) {
       throw CLI::ValidationError(name, problem);
     }
   };
-  return keep(app_->add_option_function(name, call, description));
+  return keep(app_->add_option_function(without_type(name), call, description), name);
 }
 
 Option* App::add_flag(const std::string& names, bool& value, const std::string& description) {

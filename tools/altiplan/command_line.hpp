@@ -61,7 +61,6 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   Option* required();
-  Option* type_name(const std::string& name);
   Option* check(const Check& check);
   Option* check(const std::function<std::string(const std::string&)>& problem) {
     return check(Check(problem));
@@ -95,10 +94,11 @@ class App {
   App& operator=(const App&) = delete;
 
   App* add_subcommand(const std::string& name, const std::string& description);
-  /// For the types that command_line.cpp lists.
+  /// For the types that command_line.cpp lists. After the names, and a blank, the type of the value
+  /// for --help: "-o,--out FILE".
   template <class Value>
   Option* add_option(const std::string& names, Value& value, const std::string& description = "");
-  /// `take` returns what is wrong with the text, "" if nothing.
+  /// `take` returns what is wrong with the text, "" if nothing. The name as above.
   Option* add_option_function(const std::string& name,
                               const std::function<std::string(const std::string&)>& take,
                               const std::string& description);
@@ -116,7 +116,7 @@ class App {
 
  private:
   explicit App(CLI::App* subcommand);
-  Option* keep(CLI::Option* option);
+  Option* keep(CLI::Option* option, const std::string& names = "");
   CommandText text() const;
 
   std::unique_ptr<CLI::App> own_;

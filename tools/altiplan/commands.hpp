@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "command_line.hpp"
 #include "guarded.hpp"
@@ -13,6 +15,22 @@ namespace altiplan::cli {
 
 /// The work of a subcommand, run once the command line is parsed; returns the exit code.
 using Action = std::function<int()>;
+
+/// Adds a subcommand. Its options are to fill the returned arguments; once they are parsed,
+/// `prepare` may complete them or throw UsageError, and the action becomes to call `run` with them.
+template <class Arguments>
+std::pair<App&, Arguments&> add_command(
+    App& app, Action& action, const std::string& name, const std::string& description,
+    const std::function<int(const Arguments&)>& run,
+    const std::function<void(Arguments&)>& prepare = [](Arguments&) {}) {
+  App* command = app.add_subcommand(name, description);
+  const auto arguments = std::make_shared<Arguments>();
+  command->callback([&action, arguments, run, prepare] {
+    prepare(*arguments);
+    action = [arguments, run] { return run(*arguments); };
+  });
+  return {*command, *arguments};
+}
 
 // Each adds its subcommand, which sets the action when it is called.
 void add_run(App& app, Action& action);

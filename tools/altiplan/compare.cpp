@@ -37,22 +37,9 @@ std::string number(double value) {
 std::string exact(double value) { return host::Json(value).dump(); }
 
 const char* name(study::MetricChange::Verdict verdict) {
-  using Verdict = study::MetricChange::Verdict;
-  switch (verdict) {
-    case Verdict::same:
-      return "same";
-    case Verdict::within:
-      return "within tolerance";
-    case Verdict::better:
-      return "better";
-    case Verdict::worse:
-      return "WORSE";
-    case Verdict::unclear:
-      return "unclear";
-    case Verdict::none:
-      return "no data";
-  }
-  return "";
+  constexpr const char* kNames[] = {"same",  "within tolerance", "better",
+                                    "WORSE", "unclear",          "no data"};
+  return kNames[std::size_t(verdict)];
 }
 
 void print_more(std::size_t all) {
@@ -68,9 +55,10 @@ void print_outcomes(const char* title, const std::vector<study::OutcomeChange>& 
   std::printf("%s: %zu\n", title, changes.size());
   for (std::size_t n = 0; n < std::min(changes.size(), kShown); ++n) {
     const study::OutcomeChange& change = changes[n];
-    const bool is_said = change.after != "solved" && !change.message.empty();
+    const bool has_reason = change.after != "solved" && !change.message.empty();
     std::printf("  %s: %s, then %s%s%s\n", change.run.c_str(), change.before.c_str(),
-                change.after.c_str(), is_said ? ": " : "", is_said ? change.message.c_str() : "");
+                change.after.c_str(), has_reason ? ": " : "",
+                has_reason ? change.message.c_str() : "");
   }
   print_more(changes.size());
 }
@@ -104,9 +92,9 @@ std::string change_text(const study::MetricChange& change) {
 }
 
 std::string verdict_text(const study::MetricChange& change) {
-  const bool is_said =
+  const bool has_reason =
       change.verdict == study::MetricChange::Verdict::unclear && !change.why_no_interval.empty();
-  return name(change.verdict) + (is_said ? ", " + change.why_no_interval : std::string());
+  return name(change.verdict) + (has_reason ? ", " + change.why_no_interval : std::string());
 }
 
 void print_metrics(const std::vector<study::MetricChange>& changes) {
@@ -197,29 +185,23 @@ int compare(const CompareArguments& arguments) {
 }  // namespace
 
 void add_compare(App& app, Action& action) {
-  App* command = app.add_subcommand("compare", "compare the results of two executions of a study");
-  auto arguments = std::make_shared<CompareArguments>();
-  command->add_option("first", arguments->first, "reference study database")
-      ->required()
-      ->type_name("DB");
-  command->add_option("second", arguments->second, "new study database")
-      ->required()
-      ->type_name("DB");
+  auto [command, arguments] = add_command<CompareArguments>(
+      app, action, "compare", "compare the results of two executions of a study", compare);
+  command.add_option("first DB", arguments.first, "reference study database")->required();
+  command.add_option("second DB", arguments.second, "new study database")->required();
   command
-      ->add_option("--metric", arguments->metrics,
-                   "metric to compare; repeatable (default: the study's metrics)")
+      .add_option("--metric", arguments.metrics,
+                  "metric to compare; repeatable (default: the study's metrics)")
       ->expected(1)
       ->take_all();
   command
-      ->add_option("--tolerance", arguments->tolerance_percent,
-                   "allowed degradation of a metric (%)")
-      ->type_name("P")
+      .add_option("--tolerance P", arguments.tolerance_percent,
+                  "allowed degradation of a metric (%)")
       ->check(number_from(0, 1000))
       ->capture_default_str();
-  command->add_flag("--gate", arguments->gate,
-                    "exit with code 1 if a run newly fails, a metric is worse, or a run of the "
-                    "first database cannot be compared");
-  set_example(*command, "altiplan compare before.db after.db --gate");
-  command->callback([&action, arguments] { action = [arguments] { return compare(*arguments); }; });
+  command.add_flag("--gate", arguments.gate,
+                   "exit with code 1 if a run newly fails, a metric is worse, or a run of the "
+                   "first database cannot be compared");
+  set_example(command, "altiplan compare before.db after.db --gate");
 }
 }  // namespace altiplan::cli

@@ -78,25 +78,21 @@ int print_status(const LinkOptions& options) {
 }  // namespace
 
 void add_download(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("download", "write a vehicle's mission, fence and rally points to a file");
-  auto arguments = std::make_shared<DownloadArguments>();
-  add_link_options(*command, "--from", arguments->link);
-  command->add_option("-o,--out", arguments->out, "output file: .plan, or .waypoints (mission)")
+  auto [command, arguments] = add_command<DownloadArguments>(
+      app, action, "download", "write a vehicle's mission, fence and rally points to a file",
+      download_plan);
+  add_link_options(command, "--from", arguments.link);
+  command.add_option("-o,--out FILE", arguments.out, "output file: .plan, or .waypoints (mission)")
       ->required()
-      ->type_name("FILE")
       ->check(out_problem);
-  set_example(*command, "altiplan download --from udp:127.0.0.1:14550 -o mission.plan");
-  command->callback(
-      [&action, arguments] { action = [arguments] { return download_plan(*arguments); }; });
+  set_example(command, "altiplan download --from udp:127.0.0.1:14550 -o mission.plan");
 }
 
 void add_status(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("status", "print a vehicle's mode, position, battery and mission count");
-  auto options = std::make_shared<LinkOptions>();
-  add_link_options(*command, "--from", *options);
-  set_example(*command, "altiplan status --from udp:127.0.0.1:14550");
-  command->callback([&action, options] { action = [options] { return print_status(*options); }; });
+  auto [command, options] = add_command<LinkOptions>(
+      app, action, "status", "print a vehicle's mode, position, battery and mission count",
+      print_status);
+  add_link_options(command, "--from", options);
+  set_example(command, "altiplan status --from udp:127.0.0.1:14550");
 }
 }  // namespace altiplan::cli

@@ -176,17 +176,15 @@ int edit(const EditArguments& arguments) {
 }  // namespace
 
 void add_edit(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("edit", "edit a scenario in the browser, planned again while you drag");
-  auto arguments = std::make_shared<EditArguments>();
+  auto [command, arguments] = add_command<EditArguments>(
+      app, action, "edit", "edit a scenario in the browser, planned again while you drag", edit);
   command
-      ->add_option("files", arguments->files,
-                   "pipelines of one scenario, a scenario (YAML) or a result (JSON)")
+      .add_option("files", arguments.files,
+                  "pipelines of one scenario, a scenario (YAML) or a result (JSON)")
       ->required();
-  command->add_flag("!--no-browser", arguments->has_browser,
-                    "print the page's address only, open no browser");
-  add_overrides(*command, arguments->overrides);
-  set_example(*command, "altiplan edit configs/pipelines/ridge_crossing.yaml");
-  command->callback([&action, arguments] { action = [arguments] { return edit(*arguments); }; });
+  command.add_flag("!--no-browser", arguments.has_browser,
+                   "print the page's address only, open no browser");
+  add_overrides(command, arguments.overrides);
+  set_example(command, "altiplan edit configs/pipelines/ridge_crossing.yaml");
 }
 }  // namespace altiplan::cli

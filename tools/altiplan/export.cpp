@@ -82,28 +82,23 @@ int export_result(const ExportArguments& arguments) {
 }  // namespace
 
 void add_export(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("export", "write a result's route for ground control stations and maps");
-  auto arguments = std::make_shared<ExportArguments>();
+  const auto prepare = [](ExportArguments& arguments) {
+    arguments.route.options.format = formats().at(format_of(arguments));
+    finish_options(arguments.route);
+  };
+  auto [command, arguments] = add_command<ExportArguments>(
+      app, action, "export", "write a result's route for ground control stations and maps",
+      export_result, prepare);
   command
-      ->add_option("--to", arguments->to,
-                   "format: qgc-plan, waypoints, kml, geojson, gpx or csv (default: by -o)")
-      ->type_name("FORMAT")
+      .add_option("--to FORMAT", arguments.to,
+                  "format: qgc-plan, waypoints, kml, geojson, gpx or csv (default: by -o)")
       ->check(Check::one_of({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
-  command->add_option("-o,--out", arguments->out, "output file (default: stdout)")
-      ->type_name("FILE");
-  command
-      ->add_option("--fence", arguments->fence,
-                   "also write the zones as a fence file for Mission Planner (QGC WPL 110)")
-      ->type_name("FILE");
-  add_route_export(*command, arguments->route);
-  command->add_flag("--flight", arguments->route.flight,
-                    "export the flown track instead of the route");
-  set_example(*command, "altiplan export result.json --takeoff --land -o ridge.plan");
-  command->callback([&action, arguments] {
-    arguments->route.options.format = formats().at(format_of(*arguments));
-    finish_options(arguments->route);
-    action = [arguments] { return export_result(*arguments); };
-  });
+  command.add_option("-o,--out FILE", arguments.out, "output file (default: stdout)");
+  command.add_option("--fence FILE", arguments.fence,
+                     "also write the zones as a fence file for Mission Planner (QGC WPL 110)");
+  add_route_export(command, arguments.route);
+  command.add_flag("--flight", arguments.route.flight,
+                   "export the flown track instead of the route");
+  set_example(command, "altiplan export result.json --takeoff --land -o ridge.plan");
 }
 }  // namespace altiplan::cli

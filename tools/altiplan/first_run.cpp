@@ -39,13 +39,14 @@ std::vector<std::string> zones_entered(const World& world, const Polyline& route
 
 /// "'A', 'B' and 3 more"
 std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMaxNames = 4;
   std::string text;
-  for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxNames, names.size()); ++i) {
     text += (i > 0 ? ", " : "") + names[i];
   }
-  return names.size() > kMost ? text + " and " + std::to_string(names.size() - kMost) + " more"
-                              : text;
+  return names.size() > kMaxNames
+             ? text + " and " + std::to_string(names.size() - kMaxNames) + " more"
+             : text;
 }
 
 /// A route for a wish that asks for less; empty if there is none either.
@@ -94,6 +95,7 @@ host::RunResult run_in(const fs::path& folder, const host::FirstFiles& files,
     const HandOut hand_out = [&](std::FILE* to, const host::RunResult& result) {
       host::write_file(out, host::file_text(host::result_json(config, result)));
       std::fprintf(to, "no route: %s\n", result.message.c_str());
+      return result.exit_code();
     };
     host::RunResult result = guarded_run(config, {}, {out, false}, interrupt, hand_out);
     host::write_file(out, host::file_text(host::result_json(config, result)));

@@ -162,30 +162,27 @@ int fly_result(const FlyArguments& arguments) {
 }  // namespace
 
 void add_fly(App& app, Action& action) {
-  App* command = app.add_subcommand(
-      "fly", "upload a result's route to a vehicle, follow its flight and judge it");
-  auto arguments = std::make_shared<FlyArguments>();
-  add_link_options(*command, "--link", arguments->link);
-  add_route_export(*command, arguments->route);
-  add_no_fence(*command, arguments->no_fence);
-  command->add_flag("--arm", arguments->arm, "arm the vehicle and start its mission");
-  command->add_flag("--command", arguments->command,
-                    "let the pipeline's local planner command the vehicle off its mission, and "
-                    "back");
-  command
-      ->add_option("-o,--out", arguments->out,
-                   "write the result with the flight to this file (JSON, default: "
-                   "RESULT.flown.json)")
-      ->type_name("FILE");
-  set_example(*command,
-              "altiplan fly result.json --link udp:127.0.0.1:14550 --takeoff --arm --command");
-  command->callback([&action, arguments] {
-    if (arguments->route.arcs == "loiter") {
+  const auto prepare = [](FlyArguments& arguments) {
+    if (arguments.route.arcs == "loiter") {
       throw UsageError{"fly follows legs between points: give --arcs points"};
     }
-    arguments->route.options.format = kit::MissionFile::Format::qgc_plan;
-    finish_options(arguments->route);
-    action = [arguments] { return fly_result(*arguments); };
-  });
+    arguments.route.options.format = kit::MissionFile::Format::qgc_plan;
+    finish_options(arguments.route);
+  };
+  auto [command, arguments] = add_command<FlyArguments>(
+      app, action, "fly", "upload a result's route to a vehicle, follow its flight and judge it",
+      fly_result, prepare);
+  add_link_options(command, "--link", arguments.link);
+  add_route_export(command, arguments.route);
+  add_no_fence(command, arguments.no_fence);
+  command.add_flag("--arm", arguments.arm, "arm the vehicle and start its mission");
+  command.add_flag("--command", arguments.command,
+                   "let the pipeline's local planner command the vehicle off its mission, and "
+                   "back");
+  command.add_option("-o,--out FILE", arguments.out,
+                     "write the result with the flight to this file (JSON, default: "
+                     "RESULT.flown.json)");
+  set_example(command,
+              "altiplan fly result.json --link udp:127.0.0.1:14550 --takeoff --arm --command");
 }
 }  // namespace altiplan::cli

@@ -216,64 +216,57 @@ int go(const GoArguments& arguments) {
 
 void add_points(App& command, GoArguments& arguments) {
   command
-      .add_option("--terrain", arguments.terrain,
+      .add_option("--terrain DEM", arguments.terrain,
                   "elevation models, or a folder of tiles; repeatable")
       ->required()
-      ->take_all()
-      ->type_name("DEM");
-  command.add_option("--from", arguments.from, "start: degrees, and metres above ground")
+      ->take_all();
+  command
+      .add_option("--from LON,LAT[,AGL]", arguments.from, "start: degrees, and metres above ground")
       ->required()
-      ->type_name("LON,LAT[,AGL]")
       ->check(point_problem);
-  command.add_option("--to", arguments.to, "goal")
-      ->required()
-      ->type_name("LON,LAT[,AGL]")
-      ->check(point_problem);
-  command.add_option("--via", arguments.via, "point to pass through, in order; repeatable")
+  command.add_option("--to LON,LAT[,AGL]", arguments.to, "goal")->required()->check(point_problem);
+  command
+      .add_option("--via LON,LAT[,AGL]", arguments.via,
+                  "point to pass through, in order; repeatable")
       ->one_at_a_time()
       ->take_all()
-      ->type_name("LON,LAT[,AGL]")
       ->check(point_problem);
 }
 
 void add_wishes(App& command, GoArguments& arguments) {
   host::RouteWish& wish = arguments.wish;
   command
-      .add_option("--avoid", arguments.avoid,
+      .add_option("--avoid FILE", arguments.avoid,
                   "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
-      ->take_all()
-      ->type_name("FILE");
+      ->take_all();
   const auto metres = [&](const char* name, std::optional<double>& value, const char* what) {
-    return command.add_option(name, value, what)->type_name("METRES")->check(number_from(0, 1e4));
+    return command.add_option(std::string(name) + " METRES", value, what)
+        ->check(number_from(0, 1e4));
   };
   metres("--min-agl", wish.min_above_ground_m, "least height above ground (default 50)");
   metres("--max-agl", wish.max_above_ground_m, "greatest height above ground (default none)");
   auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
-  command.add_option("--wing", wish.turn_radius_m, "plan for an aeroplane with this turn radius")
-      ->type_name("RADIUS")
+  command
+      .add_option("--wing RADIUS", wish.turn_radius_m,
+                  "plan for an aeroplane with this turn radius")
       ->check(number_from(1, 5000))
       ->excludes(copter);
-  command.add_option("--planner", wish.planner, "planner (default: chosen)")->type_name("NAME");
-  command
-      .add_option("--start-time", wish.start_time,
-                  "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count")
-      ->type_name("TIME");
-  command.add_option("--crs", wish.crs, "coordinate system of a model that names none")
-      ->type_name("EPSG:CODE");
-  command.add_option("-o,--out", arguments.out, "new folder (default: the model's name)")
-      ->type_name("DIR");
+  command.add_option("--planner NAME", wish.planner, "planner (default: chosen)");
+  command.add_option("--start-time TIME", wish.start_time,
+                     "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count");
+  command.add_option("--crs EPSG:CODE", wish.crs, "coordinate system of a model that names none");
+  command.add_option("-o,--out DIR", arguments.out, "new folder (default: the model's name)");
 }
 }  // namespace
 
 void add_go(App& app, Action& action) {
-  App* command = app.add_subcommand("go", "a first route between two points, without YAML");
-  auto arguments = std::make_shared<GoArguments>();
-  add_points(*command, *arguments);
-  add_wishes(*command, *arguments);
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command,
+  auto [command, arguments] = add_command<GoArguments>(
+      app, action, "go", "a first route between two points, without YAML", go);
+  add_points(command, arguments);
+  add_wishes(command, arguments);
+  add_plugin_path(command, arguments.overrides);
+  set_example(command,
               "altiplan go --terrain configs/data/jacksboro_fault.tif --from -84.38,36.48 "
               "--to -84.12,36.70 --max-agl 120");
-  command->callback([&action, arguments] { action = [arguments] { return go(*arguments); }; });
 }
 }  // namespace altiplan::cli

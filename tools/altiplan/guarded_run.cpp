@@ -27,6 +27,9 @@ host::ProcessGuard::CrashReport crash_report(const CrashOutput& crash, const hos
   if (crash.file) {
     words.file = std::filesystem::absolute(*crash.file);
   }
+  if (crash.complete) {
+    crash.complete(words, result);
+  }
   return words;
 }
 }  // namespace
@@ -46,16 +49,17 @@ host::RunResult guarded_run(const host::Config& config, host::RunOptions options
   };
   options.on_stuck = [&](const host::RunResult& result) {
     watch->end();
+    int code = result.exit_code();
     // The plugin is still running and may print: its stdout stays redirected.
     if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
       try {
-        hand_out(out, result);
+        code = hand_out(out, result);
       } catch (const Error& error) {
         std::cerr << "altiplan: " << error.what() << std::endl;
       }
       std::fclose(out);
     }
-    _exit(interrupt.happened() ? kInterrupted : result.exit_code());
+    _exit(interrupt.happened() ? kInterrupted : code);
   };
   return host::run(config, options);
 }

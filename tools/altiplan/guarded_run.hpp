@@ -15,10 +15,13 @@ namespace altiplan::cli {
 struct CrashOutput {
   std::optional<std::string> file;
   bool on_stdout = false;
+  /// Completes what is printed then, and the exit code.
+  std::function<void(host::ProcessGuard::CrashReport& report, const host::RunResult& result)>
+      complete{};
 };
 
-/// Prints, and writes, a result.
-using HandOut = std::function<void(std::FILE* to, const host::RunResult& result)>;
+/// Prints, and writes, a result; returns the exit code.
+using HandOut = std::function<int(std::FILE* to, const host::RunResult& result)>;
 
 /// Runs a pipeline with the process guarded against its plugins. If a plugin never returns, the
 /// result so far is handed out and the process ends.

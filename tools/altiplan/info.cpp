@@ -60,15 +60,13 @@ int info_of(const InfoArguments& arguments) {
 }  // namespace
 
 void add_info(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("info", "what a file holds: elevation model, zones, map, mission");
-  auto arguments = std::make_shared<InfoArguments>();
-  command->add_option("files", arguments->files, "files")->required();
-  command->add_option("--crs", arguments->crs, "coordinate system of a model that names none")
-      ->type_name("EPSG:CODE");
-  command->add_flag("--json", arguments->json, "print as JSON");
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan info configs/data/jacksboro_fault.tif");
-  command->callback([&action, arguments] { action = [arguments] { return info_of(*arguments); }; });
+  auto [command, arguments] = add_command<InfoArguments>(
+      app, action, "info", "what a file holds: elevation model, zones, map, mission", info_of);
+  command.add_option("files", arguments.files, "files")->required();
+  command.add_option("--crs EPSG:CODE", arguments.crs,
+                     "coordinate system of a model that names none");
+  command.add_flag("--json", arguments.json, "print as JSON");
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan info configs/data/jacksboro_fault.tif");
 }
 }  // namespace altiplan::cli

@@ -25,29 +25,22 @@ std::optional<link::Signer> signer_of(const LinkOptions& options) {
 
 void add_link_options(App& command, const char* address, LinkOptions& options) {
   command
-      .add_option(address, options.address,
+      .add_option(std::string(address) + " ADDRESS", options.address,
                   "the vehicle: udp:HOST:PORT, udpin:[HOST:]PORT to listen (default host "
                   "127.0.0.1), tcp:HOST:PORT or serial:DEVICE:BAUD")
       ->required()
-      ->type_name("ADDRESS")
       ->check(address_problem);
-  command.add_option("--target", options.target, "system id of the vehicle (default: the first)")
-      ->type_name("N")
+  command.add_option("--target N", options.target, "system id of the vehicle (default: the first)")
       ->check(Check::between(1, 255));
-  command.add_option("--system", options.system, "own system id (default 255)")
-      ->type_name("N")
+  command.add_option("--system N", options.system, "own system id (default 255)")
       ->check(Check::between(1, 255));
-  command.add_option("--component", options.component, "own component id (default 190)")
-      ->type_name("N")
+  command.add_option("--component N", options.component, "own component id (default 190)")
       ->check(Check::between(1, 255));
+  command.add_option("--sign-key FILE", options.sign_key,
+                     "file of a 32-byte key: packets are signed, and unsigned ones ignored");
   command
-      .add_option("--sign-key", options.sign_key,
-                  "file of a 32-byte key: packets are signed, and unsigned ones ignored")
-      ->type_name("FILE");
-  command
-      .add_option("--timeout", options.timeout_s,
+      .add_option("--timeout SECONDS", options.timeout_s,
                   "timeout for the first heartbeat of the vehicle (s, default 10)")
-      ->type_name("SECONDS")
       ->check(number_from(0.1, 3600));
 }
 

@@ -35,27 +35,24 @@ void set_example(App& command, const std::string& example) {
 
 void add_plugin_path(App& command, host::Overrides& overrides) {
   command
-      .add_option("--plugin-path", overrides.plugin_path,
+      .add_option("--plugin-path DIR", overrides.plugin_path,
                   "folder of plugin libraries, searched before the default ones; repeatable")
       ->one_at_a_time()
-      ->type_name("DIR")
       ->take_all();
 }
 
 void add_overrides(App& command, host::Overrides& overrides) {
   add_plugin_path(command, overrides);
-  command.add_option("--scenario", overrides.scenario, "scenario file, overrides the pipeline's")
-      ->type_name("FILE");
-  command.add_option("--seed", overrides.seed, "random seed, overrides the pipeline's")
-      ->type_name("N")
+  command.add_option("--scenario FILE", overrides.scenario,
+                     "scenario file, overrides the pipeline's");
+  command.add_option("--seed N", overrides.seed, "random seed, overrides the pipeline's")
       ->check(seed_problem);
   command
       .add_option(
-          "--set", overrides.set,
+          "--set KEY=VALUE", overrides.set,
           "override a key of the pipeline, or of the scenario as scenario.KEY; ~KEY removes it; "
           "repeatable")
       ->expected(1)
-      ->type_name("KEY=VALUE")
       ->take_all()
       ->check(assignment_problem);
 }
@@ -146,9 +143,8 @@ int main_checked(int argc, char** argv) {
   }
   App app("Plans and judges routes for unmanned aircraft with plugins configured in YAML.",
           "altiplan");
-  app.add_option_function("--log-level", read_log_level,
-                          "messages on stderr: quiet, warning or info (default warning)")
-      ->type_name("LEVEL");
+  app.add_option_function("--log-level LEVEL", read_log_level,
+                          "messages on stderr: quiet, warning or info (default warning)");
   set_example(app, "altiplan run configs/pipelines/ridge_crossing.yaml");
   Action action;
   add_go(app, action);

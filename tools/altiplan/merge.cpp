@@ -48,13 +48,11 @@ int merge(const MergeArguments& arguments) {
 }  // namespace
 
 void add_merge(App& app, Action& action) {
-  App* command = app.add_subcommand("merge", "merge the shards of a study into one database");
-  auto arguments = std::make_shared<MergeArguments>();
-  command->add_option("stores", arguments->stores, "study databases, all of the same study")
-      ->required()
-      ->type_name("DB");
-  command->add_option("-o,--out", arguments->out, "merged database")->required()->type_name("DB");
-  set_example(*command, "altiplan merge part-1.db part-2.db -o all.db");
-  command->callback([&action, arguments] { action = [arguments] { return merge(*arguments); }; });
+  auto [command, arguments] = add_command<MergeArguments>(
+      app, action, "merge", "merge the shards of a study into one database", merge);
+  command.add_option("stores DB", arguments.stores, "study databases, all of the same study")
+      ->required();
+  command.add_option("-o,--out DB", arguments.out, "merged database")->required();
+  set_example(command, "altiplan merge part-1.db part-2.db -o all.db");
 }
 }  // namespace altiplan::cli

@@ -211,22 +211,18 @@ int new_project(const NewArguments& arguments) {
 }  // namespace
 
 void add_new(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("new", "create a complete out-of-tree plugin project in ./NAME");
-  auto arguments = std::make_shared<NewArguments>();
+  auto [command, arguments] = add_command<NewArguments>(
+      app, action, "new", "create a complete out-of-tree plugin project in ./NAME", new_project);
   command
-      ->add_option("kind", arguments->kind,
-                   "kind: constraint, environment, local_planner, planner, smoother or tuner")
+      .add_option("kind", arguments.kind,
+                  "kind: constraint, environment, local_planner, planner, smoother or tuner")
       ->required();
-  command
-      ->add_option("name", arguments->name, "name of the plugin and of its folder, in snake_case")
+  command.add_option("name", arguments.name, "name of the plugin and of its folder, in snake_case")
       ->required();
-  command->add_flag(
-      "--python", arguments->python,
+  command.add_flag(
+      "--python", arguments.python,
       "write a constraint, environment, planner or smoother in Python: the file NAME.py, "
       "which needs no build");
-  set_example(*command, "altiplan new planner my_planner");
-  command->callback(
-      [&action, arguments] { action = [arguments] { return new_project(*arguments); }; });
+  set_example(command, "altiplan new planner my_planner");
 }
 }  // namespace altiplan::cli

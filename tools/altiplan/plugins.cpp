@@ -69,34 +69,31 @@ int schema(const PluginsArguments& arguments) {
   return kDone;
 }
 
-App* add(App& app, Action& action, const char* name, const char* sentence,
-         const std::shared_ptr<PluginsArguments>& arguments, int (*call)(const PluginsArguments&)) {
-  App* command = app.add_subcommand(name, sentence);
-  add_plugin_path(*command, arguments->overrides);
-  command->add_flag("--json", arguments->json, "print as JSON");
-  command->callback(
-      [&action, arguments, call] { action = [arguments, call] { return call(*arguments); }; });
-  return command;
+using Command = std::pair<App&, PluginsArguments&>;
+
+Command add(App& app, Action& action, const char* name, const char* sentence,
+            int (*call)(const PluginsArguments&)) {
+  Command added = add_command<PluginsArguments>(app, action, name, sentence, call);
+  add_plugin_path(added.first, added.second.overrides);
+  added.first.add_flag("--json", added.second.json, "print as JSON");
+  return added;
 }
 }  // namespace
 
 void add_plugins(App& app, Action& action) {
-  auto arguments = std::make_shared<PluginsArguments>();
-  App* command =
-      add(app, action, "plugins", "list the loaded plugins, and why other libraries are refused",
-          arguments, &plugins);
-  command->add_flag("--strict", arguments->strict, "exit with code 4 if a library is refused");
-  set_example(*command, "altiplan plugins --plugin-path build/my_plugins");
+  auto [all, of_all] = add(app, action, "plugins",
+                           "list the loaded plugins, and why other libraries are refused", plugins);
+  all.add_flag("--strict", of_all.strict, "exit with code 4 if a library is refused");
+  set_example(all, "altiplan plugins --plugin-path build/my_plugins");
 
-  arguments = std::make_shared<PluginsArguments>();
-  command = add(app, action, "describe", "print a plugin's description, parameters and traits",
-                arguments, &describe);
-  command->add_option("name", arguments->name, "name of the plugin")->required();
-  set_example(*command, "altiplan describe astar");
+  auto [one, of_one] =
+      add(app, action, "describe", "print a plugin's description, parameters and traits", describe);
+  one.add_option("name", of_one.name, "name of the plugin")->required();
+  set_example(one, "altiplan describe astar");
 
-  arguments = std::make_shared<PluginsArguments>();
-  command = add(app, action, "schema", "print the JSON Schema (draft-07) of the input files",
-                arguments, &schema);
-  set_example(*command, "altiplan schema > altiplan.schema.json");
+  set_example(
+      add(app, action, "schema", "print the JSON Schema (draft-07) of the input files", schema)
+          .first,
+      "altiplan schema > altiplan.schema.json");
 }
 }  // namespace altiplan::cli

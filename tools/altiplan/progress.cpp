@@ -16,12 +16,12 @@ void write_out(const std::string& text) {
 }
 
 /// The first characters of the text, with an ellipsis if it has more; 0: all.
-std::string cut(const std::string& text, std::size_t most) {
+std::string cut(const std::string& text, std::size_t max_width) {
   std::size_t end = 0;
   for (std::size_t count = 0; end < text.size(); ++count) {
     const std::size_t last = end;
     end += host::utf8_length(std::string_view(text).substr(end));
-    if (most > 0 && count + 1 == most && end < text.size()) {
+    if (max_width > 0 && count + 1 == max_width && end < text.size()) {
       return text.substr(0, last) + "…";
     }
   }

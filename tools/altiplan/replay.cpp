@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <cstdio>
 
 #include "commands.hpp"
+#include "guarded_run.hpp"
 #include "host/base/output_file.hpp"
 #include "host/result/result_json.hpp"
-#include "host/run/pipeline.hpp"
-#include "interrupt.hpp"
-#include "run_watch.hpp"
 #include "study/compare/replay.hpp"
 #include "study/plan/study_plan.hpp"
 #include "study/store/find_run.hpp"
@@ -61,24 +57,14 @@ int hand_out(std::FILE* to, const ReplayArguments& arguments, const study::Store
   return code;
 }
 
-/// Printed if a plugin ends the process.
-host::ProcessGuard::CrashReport crash_report(const ReplayArguments& arguments,
-                                             const host::Config& config,
-                                             const study::StoredRun& stored,
-                                             const host::RunResult& result) {
-  host::ProcessGuard::CrashReport words;
+/// If a plugin ends the process, whether it did so in the stored run.
+void complete(host::ProcessGuard::CrashReport& report, const study::StoredRun& stored) {
   const bool as_then = stored.outcome == "crashed";
-  words.for_user = over_progress() + "altiplan: " + result.message + "\n" +
-                   study::run_name(stored) + ": " +
-                   (as_then ? "crashed, as the stored run did: " + stored.message
-                            : "crashed, unlike the stored run: " + stored.outcome) +
-                   "\n";
-  if (arguments.out) {
-    words.result = host::file_text(host::result_json(config, result));
-    words.file = std::filesystem::absolute(*arguments.out);
-  }
-  words.exit_code = as_then ? kDone : kNoRoute;
-  return words;
+  report.for_user += study::run_name(stored) + ": " +
+                     (as_then ? "crashed, as the stored run did: " + stored.message
+                              : "crashed, unlike the stored run: " + stored.outcome) +
+                     "\n";
+  report.exit_code = as_then ? kDone : kNoRoute;
 }
 
 int run_again(const ReplayArguments& arguments, const study::Store& store,
@@ -89,38 +75,16 @@ int run_again(const ReplayArguments& arguments, const study::Store& store,
   Interrupt interrupt;
   host::RunOptions options;
   options.timeout_s = budget.wall_s;
-  options.out = arguments.out;
   options.trace = arguments.trace;
-  options.stop = interrupt.token();
-  std::optional<host::ProcessGuard> process(std::in_place);
-  options.process = &*process;
-  std::optional<RunWatch> watch(std::in_place, config, options.timeout_s);
-  options.progress = watch->progress();
-  options.on_call = [&](const host::RunResult& result) {
-    watch->call(result);
-    process->set_crash_report(crash_report(arguments, config, stored, result));
+  const CrashOutput crash{arguments.out, false,
+                          [&](auto& words, const auto&) { complete(words, stored); }};
+  const HandOut to = [&](std::FILE* out, const host::RunResult& result) {
+    return interrupt.happened() ? kInterrupted  // an incomplete run cannot be compared
+                                : hand_out(out, arguments, stored, config, key, result);
   };
-  options.on_stuck = [&](const host::RunResult& result) {
-    watch->end();
-    // The plugin is still running and may print: its stdout stays redirected.
-    if (interrupt.happened()) {
-      _exit(kInterrupted);
-    }
-    int code = kInternal;
-    if (std::FILE* out = fdopen(process->true_stdout(), "w")) {
-      code = hand_out(out, arguments, stored, config, key, result);
-      std::fclose(out);
-    }
-    _exit(code);
-  };
-  const host::RunResult result = host::run(config, options);
-  watch.reset();
-  process.reset();
-  if (interrupt.happened()) {
-    return kInterrupted;  // an incomplete run cannot be compared
-  }
-  const int code = hand_out(stdout, arguments, stored, config, key, result);
-  if (!result.trace_error.empty()) {
+  const host::RunResult result = guarded_run(config, options, crash, interrupt, to);
+  const int code = to(stdout, result);
+  if (code != kInterrupted && !result.trace_error.empty()) {
     throw Error(result.trace_error);
   }
   return code;
@@ -157,24 +121,19 @@ int replay(const ReplayArguments& arguments) {
 }  // namespace
 
 void add_replay(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("replay", "repeat a run of a study and compare the results bit for bit");
-  auto arguments = std::make_shared<ReplayArguments>();
-  command->add_option("store", arguments->store, "study database")->required()->type_name("DB");
+  auto [command, arguments] = add_command<ReplayArguments>(
+      app, action, "replay", "repeat a run of a study and compare the results bit for bit", replay);
+  command.add_option("store DB", arguments.store, "study database")->required();
   command
-      ->add_option("run", arguments->run,
-                   "run: its id, its key or a prefix of the key, or its name 'PIPELINE SCENARIO "
-                   "#REPETITION'")
+      .add_option("run", arguments.run,
+                  "run: its id, its key or a prefix of the key, or its name 'PIPELINE SCENARIO "
+                  "#REPETITION'")
       ->required();
-  command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
-      ->type_name("FILE");
-  command->add_option("--trace", arguments->trace, "write a search trace to this file")
-      ->type_name("FILE");
-  command->add_flag(
-      "--stored", arguments->stored,
-      "write the stored result instead of running (input for view, check and export)");
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan replay study.db 'astar city #0'");
-  command->callback([&action, arguments] { action = [arguments] { return replay(*arguments); }; });
+  command.add_option("-o,--out FILE", arguments.out, "write the result to this file (JSON)");
+  command.add_option("--trace FILE", arguments.trace, "write a search trace to this file");
+  command.add_flag("--stored", arguments.stored,
+                   "write the stored result instead of running (input for view, check and export)");
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan replay study.db 'astar city #0'");
 }
 }  // namespace altiplan::cli

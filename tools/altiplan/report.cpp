@@ -76,7 +76,7 @@ int write_page(const ReportArguments& arguments) {
   return kDone;
 }
 
-int report(const ReportArguments& arguments) {
+int write_report(const ReportArguments& arguments) {
   if (arguments.arena) {
     expect_store_writable(*arguments.arena, "--arena");
   }
@@ -91,31 +91,26 @@ int report(const ReportArguments& arguments) {
 }  // namespace
 
 void add_report(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("report", "write a study's results as a page with figures and tables");
-  auto arguments = std::make_shared<ReportArguments>();
-  command->add_option("stores", arguments->stores, "study databases; all shards of one study")
-      ->required()
-      ->type_name("DB");
-  command
-      ->add_option("-o,--out", arguments->folder,
-                   "report folder: a new folder, or that of an earlier report")
-      ->type_name("DIR");
-  command->add_option("--arena", arguments->arena, "write a database for Planner Arena")
-      ->type_name("FILE");
-  command->add_option("--title", arguments->title, "title of the page (default: the study's name)")
-      ->type_name("TEXT");
-  command->add_flag(
-      "--no-times", arguments->no_times,
-      "omit times, host and other values that vary between runs, so that equal results "
-      "give identical files");
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan report study.db -o report");
-  command->callback([&action, arguments] {
-    if (arguments->folder.empty() && !arguments->arena) {
+  const auto prepare = [](ReportArguments& arguments) {
+    if (arguments.folder.empty() && !arguments.arena) {
       throw UsageError{"-o or --arena is required"};
     }
-    action = [arguments] { return report(*arguments); };
-  });
+  };
+  auto [command, arguments] = add_command<ReportArguments>(
+      app, action, "report", "write a study's results as a page with figures and tables",
+      write_report, prepare);
+  command.add_option("stores DB", arguments.stores, "study databases; all shards of one study")
+      ->required();
+  command.add_option("-o,--out DIR", arguments.folder,
+                     "report folder: a new folder, or that of an earlier report");
+  command.add_option("--arena FILE", arguments.arena, "write a database for Planner Arena");
+  command.add_option("--title TEXT", arguments.title,
+                     "title of the page (default: the study's name)");
+  command.add_flag(
+      "--no-times", arguments.no_times,
+      "omit times, host and other values that vary between runs, so that equal results "
+      "give identical files");
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan report study.db -o report");
 }
 }  // namespace altiplan::cli

@@ -209,48 +209,45 @@ int reproduce(const ReproduceArguments& arguments) {
 }  // namespace
 
 void add_reproduce(App& app, Action& action, const std::string& command_line) {
-  App* command = app.add_subcommand(
-      "reproduce", "run the tables of a published paper and compare: paper, documentation, here");
-  auto arguments = std::make_shared<ReproduceArguments>();
-  arguments->options.study.command = command_line;
-  arguments->options.study.jobs = int(std::max(1U, std::thread::hardware_concurrency()));
-  command
-      ->add_option("papers", arguments->papers,
-                   "papers: number (002), name (fusion_astar), paper file, or all")
-      ->type_name("PAPER");
-  auto* list_only = command->add_flag("--list", arguments->list,
-                                      "only list the papers, and their rows with times");
-  command->add_option("--row", arguments->rows, "only this row; repeatable")
-      ->type_name("ID")
+  const auto prepare = [](ReproduceArguments& arguments) {
+    if (arguments.papers.empty() && !arguments.list) {
+      throw UsageError{"PAPER is required: a number, a name, a paper file, or all (--list)"};
+    }
+    arguments.options.study.plugin_path = arguments.overrides.plugin_path;
+    // Thousands of routes would fill gigabytes of a temporary folder.
+    arguments.options.study.results = arguments.out.has_value();
+  };
+  auto [command, arguments] = add_command<ReproduceArguments>(
+      app, action, "reproduce",
+      "run the tables of a published paper and compare: paper, documentation, here",
+      [](const ReproduceArguments& given) { return given.list ? list(given) : reproduce(given); },
+      prepare);
+  arguments.options.study.command = command_line;
+  arguments.options.study.jobs = int(std::max(1U, std::thread::hardware_concurrency()));
+  command.add_option("papers PAPER", arguments.papers,
+                     "papers: number (002), name (fusion_astar), paper file, or all");
+  auto* list_only =
+      command.add_flag("--list", arguments.list, "only list the papers, and their rows with times");
+  command.add_option("--row ID", arguments.rows, "only this row; repeatable")
       ->one_at_a_time()
       ->take_all()
       ->excludes(list_only);
   command
-      ->add_flag("--quick", arguments->options.quick,
-                 "run a sample of the scenarios and seeds: the documentation's figures must lie in "
-                 "its 99.9 % intervals")
+      .add_flag("--quick", arguments.options.quick,
+                "run a sample of the scenarios and seeds: the documentation's figures must lie in "
+                "its 99.9 % intervals")
       ->excludes(list_only);
   command
-      ->add_option("-o,--out", arguments->out,
-                   "keep the results in this folder, a database for each study; the next call uses "
-                   "them")
-      ->type_name("DIR")
+      .add_option("-o,--out DIR", arguments.out,
+                  "keep the results in this folder, a database for each study; the next call uses "
+                  "them")
       ->excludes(list_only);
   command
-      ->add_option("--jobs", arguments->options.study.jobs,
-                   "number of parallel runs (default: the number of processors)")
+      .add_option("--jobs", arguments.options.study.jobs,
+                  "number of parallel runs (default: the number of processors)")
       ->check(Check::between(1, 1024));
-  command->add_flag("--json", arguments->json, "print as JSON");
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan reproduce 002 --quick");
-  command->callback([&action, arguments] {
-    if (arguments->papers.empty() && !arguments->list) {
-      throw UsageError{"PAPER is required: a number, a name, a paper file, or all (--list)"};
-    }
-    arguments->options.study.plugin_path = arguments->overrides.plugin_path;
-    // Thousands of routes would fill gigabytes of a temporary folder.
-    arguments->options.study.results = arguments->out.has_value();
-    action = [arguments] { return arguments->list ? list(*arguments) : reproduce(*arguments); };
-  });
+  command.add_flag("--json", arguments.json, "print as JSON");
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan reproduce 002 --quick");
 }
 }  // namespace altiplan::cli

@@ -50,29 +50,25 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
 void add_route_export(App& command, RouteExport& route) {
   command.add_option("result", route.result, "result file of altiplan run (JSON)")->required();
   command
-      .add_option("--altitude", route.altitude,
+      .add_option("--altitude FROM", route.altitude,
                   "altitude reference: sea, ground or home (default sea)")
-      ->type_name("FROM")
       ->check(Check::one_of({"sea", "ground", "home"}));
   command
-      .add_option("--arcs", route.arcs,
+      .add_option("--arcs FORM", route.arcs,
                   "turns as points within 0.5 m (points, the default), or as loiters that end on "
                   "a tangent where an autopilot flies the same turn (loiter)")
-      ->type_name("FORM")
       ->check(Check::one_of({"points", "loiter"}));
   command.add_flag("--takeoff", route.options.takeoff, "begin the mission with a take-off item");
   command.add_flag("--land", route.options.land,
                    "end the mission with a landing below the last waypoint");
   command
-      .add_option("--home-altitude", route.options.home_altitude_m,
+      .add_option("--home-altitude M", route.options.home_altitude_m,
                   "altitude of home above sea level (m, default: the ground below the start)")
-      ->type_name("M")
       ->check(number_from(-1e4, 1e5));
   command
-      .add_option("--max-items", route.options.max_items,
+      .add_option("--max-items N", route.options.max_items,
                   "maximum number of mission items; waypoints are dropped while the route stays "
                   "valid (default: no limit)")
-      ->type_name("N")
       ->check(Check::between(2, 1'000'000));
   add_plugin_path(command, route.overrides);
 }

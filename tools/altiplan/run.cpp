@@ -95,8 +95,8 @@ void print_table(std::FILE* to, const host::RunResult& result) {
     print_flight(to, *result.flight, result.steps.back().budget_hit);
   }
   for (const host::StepResult& step : result.steps) {
-    const std::string& said = result.message;  // printed last
-    if (!step.accepted && (step.message.empty() || said.find(step.message) == said.npos)) {
+    const std::string& message = result.message;  // printed last
+    if (!step.accepted && (step.message.empty() || message.find(step.message) == message.npos)) {
       std::fprintf(to, "  %s: %s\n", step.id.c_str(), step.message.c_str());
     }
   }
@@ -148,6 +148,7 @@ int run(const RunArguments& arguments) {
   options.trace_limit_mb = arguments.trace_limit_mb;
   const HandOut to = [&](std::FILE* out, const host::RunResult& result) {
     hand_out(out, arguments, config, result, interrupt);
+    return result.exit_code();
   };
   const host::RunResult result =
       guarded_run(config, options, {arguments.out, arguments.json}, interrupt, to);
@@ -161,34 +162,30 @@ int run(const RunArguments& arguments) {
 }  // namespace
 
 void add_run(App& app, Action& action) {
-  App* command = app.add_subcommand("run", "run a pipeline: plan, smooth, judge and fly a route");
-  auto arguments = std::make_shared<RunArguments>();
-  command->add_option("pipeline", arguments->pipeline, "pipeline file (YAML)")->required();
-  add_overrides(*command, arguments->overrides);
+  auto [command, arguments] = add_command<RunArguments>(
+      app, action, "run", "run a pipeline: plan, smooth, judge and fly a route", run);
+  command.add_option("pipeline", arguments.pipeline, "pipeline file (YAML)")->required();
+  add_overrides(command, arguments.overrides);
   command
-      ->add_option("--threads", arguments->threads,
-                   "maximum number of threads per plugin (default 1)")
+      .add_option("--threads", arguments.threads,
+                  "maximum number of threads per plugin (default 1)")
       ->check(Check::between(1, 1024));
   auto* trace =
-      command->add_option("--trace", arguments->trace, "write a search trace to this file")
-          ->type_name("FILE");
+      command.add_option("--trace FILE", arguments.trace, "write a search trace to this file");
   command
-      ->add_option("--trace-limit", arguments->trace_limit_mb,
-                   "most that the trace may take (MB, default 64)")
-      ->type_name("MB")
+      .add_option("--trace-limit MB", arguments.trace_limit_mb,
+                  "most that the trace may take (MB, default 64)")
       ->check(Check::between(1, 1'000'000))
       ->needs(trace);
-  command->add_option("-o,--out", arguments->out, "write the result to this file (JSON)")
-      ->type_name("FILE");
+  command.add_option("-o,--out FILE", arguments.out, "write the result to this file (JSON)");
   command
-      ->add_option("--timeout", arguments->timeout_s,
-                   "timeout for steps without `within_s`, and for creating plugins and layers and "
-                   "judging (s, default 60)")
+      .add_option("--timeout", arguments.timeout_s,
+                  "timeout for steps without `within_s`, and for creating plugins and layers and "
+                  "judging (s, default 60)")
       ->check(number_from(0.001, 1e8));
-  command->add_flag("--json", arguments->json, "print only the result, as JSON");
-  set_example(*command,
+  command.add_flag("--json", arguments.json, "print only the result, as JSON");
+  set_example(command,
               "altiplan run configs/pipelines/ridge_crossing.yaml --seed 3 "
               "--set steps.0.with.weight_g=0.6 --out result.json");
-  command->callback([&action, arguments] { action = [arguments] { return run(*arguments); }; });
 }
 }  // namespace altiplan::cli

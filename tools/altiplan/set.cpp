@@ -68,19 +68,18 @@ int set(SetArguments arguments) {
 }  // namespace
 
 void add_set(App& app, Action& action) {
-  App* command = app.add_subcommand(
-      "set", "change values of a pipeline or scenario file, and nothing else in it");
-  auto arguments = std::make_shared<SetArguments>();
-  command->add_option("file", arguments->file, "pipeline or scenario file (YAML)")->required();
+  auto [command, arguments] = add_command<SetArguments>(
+      app, action, "set", "change values of a pipeline or scenario file, and nothing else in it",
+      set);
+  command.add_option("file", arguments.file, "pipeline or scenario file (YAML)")->required();
   command
-      ->add_option(
-          "assignments", arguments->set,
+      .add_option(
+          "assignments", arguments.set,
           "KEY=VALUE, or ~KEY to remove; of a pipeline, scenario.KEY changes its scenario's file")
       ->required();
-  add_plugin_path(*command, arguments->overrides);
+  add_plugin_path(command, arguments.overrides);
   set_example(
-      *command,
+      command,
       "altiplan set pipeline.yaml steps.0.with.weight_g=0.6 'scenario.goal.at_m=[23000, 21000]'");
-  command->callback([&action, arguments] { action = [arguments] { return set(*arguments); }; });
 }
 }  // namespace altiplan::cli

@@ -34,36 +34,31 @@ int man(const ManArguments& arguments, const std::vector<CommandText>& all) {
 }  // namespace
 
 void add_completion(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("completion", "print a script that completes commands in a shell");
-  auto shell = std::make_shared<std::string>();
-  command->add_option("shell", *shell, "bash, zsh or fish")
+  const auto print = [&app](const std::string& shell) {
+    std::cout << completion(shell, app.texts());
+    return kDone;
+  };
+  auto [command, shell] = add_command<std::string>(
+      app, action, "completion", "print a script that completes commands in a shell", print);
+  command.add_option("shell", shell, "bash, zsh or fish")
       ->required()
       ->check(Check::one_of({"bash", "zsh", "fish"}));
-  set_example(*command, "source <(altiplan completion bash)");
-  command->callback([&app, &action, shell] {
-    action = [&app, shell] {
-      std::cout << completion(*shell, app.texts());
-      return kDone;
-    };
-  });
+  set_example(command, "source <(altiplan completion bash)");
 }
 
 void add_man(App& app, Action& action) {
-  App* command = app.add_subcommand("man", "print the manual page of a command");
-  auto arguments = std::make_shared<ManArguments>();
+  const auto print = [&app](const ManArguments& given) { return man(given, app.texts()); };
+  auto [command, arguments] =
+      add_command<ManArguments>(app, action, "man", "print the manual page of a command", print);
   std::vector<std::string> names;
   for (const CommandText& each : app.texts()) {
     names.push_back(each.name);
   }
-  Option* name = command->add_option("command", arguments->command, "default: the program")
+  Option* name = command.add_option("command", arguments.command, "default: the program")
                      ->check(Check::one_of(names));
-  command->add_option("--to", arguments->folder, "write the pages of all commands into this folder")
-      ->type_name("DIR")
+  command
+      .add_option("--to DIR", arguments.folder, "write the pages of all commands into this folder")
       ->excludes(name);
-  set_example(*command, "altiplan man run | man -l -");
-  command->callback([&app, &action, arguments] {
-    action = [&app, arguments] { return man(*arguments, app.texts()); };
-  });
+  set_example(command, "altiplan man run | man -l -");
 }
 }  // namespace altiplan::cli

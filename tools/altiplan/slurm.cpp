@@ -7,6 +7,7 @@
 #include "altiplan/kit/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
+#include "host/base/program.hpp"
 #include "study/slurm/command.hpp"
 #include "study/slurm/slurm.hpp"
 #include "study/store/merge.hpp"
@@ -159,8 +160,8 @@ int shards_of(const SlurmArguments& arguments, const study::SlurmJob& job,
     return shards;
   }
   const double wanted = std::ceil(seconds / job.jobs / (arguments.chunk_minutes * 60));
-  const double most = std::min(kMaxShards, double(plan.runs.size()));
-  return int(std::clamp(wanted, 1.0, std::max(1.0, most)));
+  const double max_shards = std::min(kMaxShards, double(plan.runs.size()));
+  return int(std::clamp(wanted, 1.0, std::max(1.0, max_shards)));
 }
 
 void print_plan(const study::SlurmJob& job, const study::StudyPlan& plan, double seconds) {
@@ -181,7 +182,7 @@ void submit_jobs(const study::SlurmJob& job, const study::StudyPlan& plan, doubl
 }
 
 int slurm(const SlurmArguments& arguments) {
-  if (!arguments.dry_run && !study::has_command("sbatch")) {
+  if (!arguments.dry_run && !host::find_on_path({"sbatch"})) {
     throw Error(
         "no sbatch on PATH: this machine cannot submit to Slurm (--dry-run only writes the "
         "scripts)");
@@ -231,46 +232,38 @@ void add_selection(App& command, SlurmArguments& arguments) {
       ->check(Check::between(1, 1000000));
   command.add_flag("--traces", arguments.traces, "store search traces");
   command
-      .add_option("--sample", arguments.sample,
+      .add_option("--sample P", arguments.sample,
                   "fraction of the runs from 0 to 1, as for altiplan study")
-      ->type_name("P")
       ->check(number_from(0, 1));
-  command
-      .add_option("--filter", arguments.filter,
-                  "regular expression for run names, as for altiplan study")
-      ->type_name("E");
+  command.add_option("--filter E", arguments.filter,
+                     "regular expression for run names, as for altiplan study");
   add_plugin_path(command, arguments.overrides);
 }
 }  // namespace
 
 void add_slurm(App& app, Action& action) {
-  App* command = app.add_subcommand("slurm", "run a study as a job array on a Slurm cluster");
-  auto arguments = std::make_shared<SlurmArguments>();
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
-  command->add_option("-o,--out", arguments->out, "results database (SQLite)")
-      ->required()
-      ->type_name("DB");
+  const auto prepare = [](SlurmArguments& arguments) {
+    if (!arguments.sbatch.empty() && !arguments.sbatch.front().starts_with("-")) {
+      throw UsageError{"sbatch: expected options of sbatch after --, found '" +
+                       arguments.sbatch.front() + "'"};
+    }
+  };
+  auto [command, arguments] = add_command<SlurmArguments>(
+      app, action, "slurm", "run a study as a job array on a Slurm cluster", slurm, prepare);
+  command.add_option("study", arguments.study, "study file (YAML)")->required();
+  command.add_option("-o,--out DB", arguments.out, "results database (SQLite)")->required();
   command
-      ->add_option("--chunk-minutes", arguments->chunk_minutes, "target duration of a task (min)")
-      ->type_name("M")
+      .add_option("--chunk-minutes M", arguments.chunk_minutes, "target duration of a task (min)")
       ->check(number_from(0.01, 100000))
       ->capture_default_str();
-  command->add_option("--partition", arguments->partition, "Slurm partition of the tasks")
-      ->type_name("P");
-  auto* dry = command->add_flag("--dry-run", arguments->dry_run,
-                                "write the scripts and print the sbatch commands; submit nothing");
-  command->add_flag("--submit", arguments->submit, "submit the jobs (default)")->excludes(dry);
-  add_selection(*command, *arguments);
-  command->add_option("sbatch", arguments->sbatch, "after --: additional sbatch options");
-  set_example(*command,
+  command.add_option("--partition P", arguments.partition, "Slurm partition of the tasks");
+  auto* dry = command.add_flag("--dry-run", arguments.dry_run,
+                               "write the scripts and print the sbatch commands; submit nothing");
+  command.add_flag("--submit", arguments.submit, "submit the jobs (default)")->excludes(dry);
+  add_selection(command, arguments);
+  command.add_option("sbatch", arguments.sbatch, "after --: additional sbatch options");
+  set_example(command,
               "altiplan slurm study.yaml --out study.db --chunk-minutes 20 -- "
               "--account=uav");
-  command->callback([&action, arguments] {
-    if (!arguments->sbatch.empty() && !arguments->sbatch.front().starts_with("-")) {
-      throw UsageError{"sbatch: expected options of sbatch after --, found '" +
-                       arguments->sbatch.front() + "'"};
-    }
-    action = [arguments] { return slurm(*arguments); };
-  });
 }
 }  // namespace altiplan::cli

@@ -159,7 +159,7 @@ int study(StudyArguments arguments) {
     expect_store_writable(arguments.store, "--out");
   }
   if (arguments.dry_run && (arguments.options.fresh || !host::is_there(arguments.options.store))) {
-    arguments.selection.most_checked = kDryPairs;  // keys of runs matter to a store alone
+    arguments.selection.max_checked = kDryPairs;  // keys of runs matter to a store alone
   }
   const study::StudyPlan plan = busy("reading the study", [&] {
     return study::load_study(arguments.study, arguments.selection, arguments.options.plugin_path);
@@ -235,65 +235,50 @@ std::string read_shard(const std::string& text, study::StudySelection& selection
 }
 
 /// Options that select runs of the study.
-void add_selection(App& app, const std::shared_ptr<StudyArguments>& arguments) {
-  App* command = &app;
-  command
-      ->add_option_function(
-          "--shard",
-          [arguments](const std::string& text) { return read_shard(text, arguments->selection); },
-          "run only part I of N, to split a study across machines")
-      ->type_name("I/N");
-  command
-      ->add_option_function(
-          "--sample",
-          [arguments](const std::string& text) {
-            return read_share(text, arguments->selection.sample);
-          },
-          "run only this fraction of the scenarios and repetitions, with every pipeline: 0.05 or "
-          "5%")
-      ->type_name("P");
-  command
-      ->add_option("--filter", arguments->selection.filter,
-                   "run only runs whose name 'PIPELINE SCENARIO #REPETITION' matches this regular "
-                   "expression")
-      ->type_name("E");
+void add_selection(App& command, study::StudySelection& selection) {
+  command.add_option_function(
+      "--shard I/N", [&](const std::string& text) { return read_shard(text, selection); },
+      "run only part I of N, to split a study across machines");
+  command.add_option_function(
+      "--sample P", [&](const std::string& text) { return read_share(text, selection.sample); },
+      "run only this fraction of the scenarios and repetitions, with every pipeline: 0.05 or 5%");
+  command.add_option("--filter E", selection.filter,
+                     "run only runs whose name 'PIPELINE SCENARIO #REPETITION' matches this "
+                     "regular expression");
 }
 }  // namespace
 
 void add_study(App& app, Action& action, const std::string& command_line) {
-  App* command = app.add_subcommand(
-      "study", "run pipelines x scenarios x repetitions, each run in its own process; resumable");
-  auto arguments = std::make_shared<StudyArguments>();
-  arguments->options.command = command_line;
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
-  command
-      ->add_option("-o,--out", arguments->store,
-                   "results database (SQLite); optional only with --dry-run")
-      ->type_name("DB");
-  command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
-      ->check(Check::between(1, 1024));
-  command
-      ->add_option("--reuse", arguments->options.reuse,
-                   "runs per worker process, recorded in the results (default 1)")
-      ->check(Check::between(1, 1000000));
-  add_selection(*command, arguments);
-  command->add_flag("--traces", arguments->options.traces, "store search traces");
-  auto* fresh =
-      command->add_flag("--fresh", arguments->options.fresh, "delete the stored runs first");
-  command->add_flag("--resume", arguments->resume, "run only runs not stored yet (default)")
-      ->excludes(fresh);
-  command->add_flag("--dry-run", arguments->dry_run,
-                    "only print the number of runs and the estimated time");
-  command->add_flag("--gate", arguments->gate, "exit with code 1 unless every claim holds");
-  host::Overrides* plugins = &arguments->overrides;
-  add_plugin_path(*command, *plugins);
-  set_example(*command, "altiplan study configs/studies/quick.yaml --out quick.db --jobs 2");
-  command->callback([&action, arguments] {
-    if (arguments->store.empty() && !arguments->dry_run) {
+  const auto prepare = [](StudyArguments& arguments) {
+    if (arguments.store.empty() && !arguments.dry_run) {
       throw UsageError{"--out is required"};
     }
-    arguments->options.plugin_path = arguments->overrides.plugin_path;
-    action = [arguments] { return study(*arguments); };
-  });
+    arguments.options.plugin_path = arguments.overrides.plugin_path;
+  };
+  auto [command, arguments] = add_command<StudyArguments>(
+      app, action, "study",
+      "run pipelines x scenarios x repetitions, each run in its own process; resumable", study,
+      prepare);
+  arguments.options.command = command_line;
+  command.add_option("study", arguments.study, "study file (YAML)")->required();
+  command.add_option("-o,--out DB", arguments.store,
+                     "results database (SQLite); optional only with --dry-run");
+  command.add_option("--jobs", arguments.options.jobs, "number of parallel runs (default 1)")
+      ->check(Check::between(1, 1024));
+  command
+      .add_option("--reuse", arguments.options.reuse,
+                  "runs per worker process, recorded in the results (default 1)")
+      ->check(Check::between(1, 1000000));
+  add_selection(command, arguments.selection);
+  command.add_flag("--traces", arguments.options.traces, "store search traces");
+  auto* fresh =
+      command.add_flag("--fresh", arguments.options.fresh, "delete the stored runs first");
+  command.add_flag("--resume", arguments.resume, "run only runs not stored yet (default)")
+      ->excludes(fresh);
+  command.add_flag("--dry-run", arguments.dry_run,
+                   "only print the number of runs and the estimated time");
+  command.add_flag("--gate", arguments.gate, "exit with code 1 unless every claim holds");
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan study configs/studies/quick.yaml --out quick.db --jobs 2");
 }
 }  // namespace altiplan::cli

@@ -17,13 +17,13 @@ constexpr std::size_t kMinWrapped = 24;
 constexpr std::size_t kMaxBlocks = 3;
 
 /// Lines of at most that many characters, broken at blanks; a longer word has a line of its own.
-std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
+std::vector<std::string> wrapped(const std::string& text, std::size_t max_width) {
   std::vector<std::string> lines;
   std::size_t at = 0;
   while (at < text.size() || lines.empty()) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
     const std::string word = text.substr(at, end - at);
-    if (lines.empty() || characters(lines.back()) + 1 + characters(word) > most) {
+    if (lines.empty() || characters(lines.back()) + 1 + characters(word) > max_width) {
       lines.push_back(word);
     } else {
       lines.back() += " " + word;

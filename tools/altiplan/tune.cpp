@@ -46,16 +46,16 @@ std::string change(double before, double now) {
   return (percent > 0 ? "+" : "") + fixed(percent, 2) + " %";
 }
 
-void add_comparison(Table& table, const char* what, const tune::TunedComparison& made) {
-  if (made.scenarios == 0) {
+void add_comparison(Table& table, const char* what, const tune::TunedComparison& comparison) {
+  if (comparison.scenarios == 0) {
     return;
   }
-  const Color color = made.mean_now < made.mean_before   ? Color::good
-                      : made.mean_now > made.mean_before ? Color::bad
-                                                         : Color::none;
-  table.add({"mean over " + counted(made.scenarios, std::string(what) + " scenario"),
-             readable(made.mean_before, 6), readable(made.mean_now, 6),
-             Table::Cell(change(made.mean_before, made.mean_now), color)});
+  const Color color = comparison.mean_now < comparison.mean_before   ? Color::good
+                      : comparison.mean_now > comparison.mean_before ? Color::bad
+                                                                     : Color::none;
+  table.add({"mean over " + counted(comparison.scenarios, std::string(what) + " scenario"),
+             readable(comparison.mean_before, 6), readable(comparison.mean_now, 6),
+             Table::Cell(change(comparison.mean_before, comparison.mean_now), color)});
 }
 
 std::string share_of(std::size_t part, std::size_t all) {
@@ -165,44 +165,39 @@ std::string metric_problem(const std::string& text) {
 void add_what(App& command, tune::TuneRequest& request) {
   command.add_option("pipeline", request.pipeline, "pipeline file to tune (YAML)")->required();
   command
-      .add_option("--over", request.over,
+      .add_option("--over KEY=RANGE", request.over,
                   "parameter of a step and its range: KEY=LO..HI, KEY=log:LO..HI, or "
                   "'KEY.{a,b}=simplex' for weights that sum to 1; repeatable")
       ->required()
       ->expected(1)
-      ->type_name("KEY=RANGE")
       ->take_all();
   command
-      .add_option("--metric", request.metric,
+      .add_option("--metric EXPRESSION", request.metric,
                   "metric to minimise: a value of a run, or an expression of values and numbers "
                   "with + - * / ( )")
       ->required()
-      ->type_name("EXPRESSION")
       ->check(metric_problem);
   command
-      .add_option("--scenarios", request.scenarios,
+      .add_option("--scenarios FILE", request.scenarios,
                   "scenarios to tune on: files, or 'FILE[KEY=VALUES,…]' for each combination of "
                   "the values (default: the pipeline's scenario)")
       ->one_or_more()
-      ->type_name("FILE")
       ->take_all();
   command
-      .add_option("--hold-out", request.hold_out,
+      .add_option("--hold-out FILE", request.hold_out,
                   "held-out scenarios, on which the tuned pipeline is compared with the original")
       ->one_or_more()
-      ->type_name("FILE")
       ->take_all();
 }
 
 void add_how(App& command, tune::TuneRequest& request) {
-  command.add_option("--tuner", request.tuner, "tuner plugin (default pso)")->type_name("NAME");
-  command.add_option("--set-tuner", request.set_tuner, "parameter of the tuner; repeatable")
+  command.add_option("--tuner NAME", request.tuner, "tuner plugin (default pso)");
+  command
+      .add_option("--set-tuner KEY=VALUE", request.set_tuner, "parameter of the tuner; repeatable")
       ->expected(1)
-      ->type_name("KEY=VALUE")
       ->take_all()
       ->check(assignment_problem);
-  command.add_option("--seed", request.seed, "random seed of the tuner (default 0)")
-      ->type_name("N")
+  command.add_option("--seed N", request.seed, "random seed of the tuner (default 0)")
       ->check(seed_problem);
   command
       .add_option("--evaluations", request.evaluations,
@@ -221,31 +216,28 @@ void add_how(App& command, tune::TuneRequest& request) {
 }  // namespace
 
 void add_tune(App& app, Action& action) {
-  App* command = app.add_subcommand(
-      "tune", "optimise parameters of a pipeline with a tuner plugin; resumable");
-  auto arguments = std::make_shared<TuneArguments>();
-  add_what(*command, arguments->request);
-  add_how(*command, arguments->request);
-  command->add_option("-o,--out", arguments->options.out, "results folder")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--jobs", arguments->options.jobs, "number of parallel runs (default 1)")
-      ->check(Check::between(1, 1024));
-  auto* fresh = command->add_flag("--fresh", arguments->options.fresh,
-                                  "delete earlier tuning results in the folder first");
-  command->add_flag("--resume", arguments->resume, "continue an interrupted tuning run (default)")
-      ->excludes(fresh);
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command,
-              "altiplan tune configs/pipelines/fusion_paper_astar_angles.yaml --out tuned --jobs 2 "
-              "\\\n    --over 'steps.0.with.{weight_g,weight_h}=simplex' --metric length_m");
-  command->callback([&action, arguments] {
-    const std::string over = problem_of([&] { tune::read_over(arguments->request.over); });
+  const auto prepare = [](TuneArguments& arguments) {
+    const std::string over = problem_of([&] { tune::read_over(arguments.request.over); });
     if (!over.empty()) {
       throw UsageError{over};
     }
-    arguments->request.plugin_path = arguments->overrides.plugin_path;
-    action = [arguments] { return tune(*arguments); };
-  });
+    arguments.request.plugin_path = arguments.overrides.plugin_path;
+  };
+  auto [command, arguments] = add_command<TuneArguments>(
+      app, action, "tune", "optimise parameters of a pipeline with a tuner plugin; resumable", tune,
+      prepare);
+  add_what(command, arguments.request);
+  add_how(command, arguments.request);
+  command.add_option("-o,--out DIR", arguments.options.out, "results folder")->required();
+  command.add_option("--jobs", arguments.options.jobs, "number of parallel runs (default 1)")
+      ->check(Check::between(1, 1024));
+  auto* fresh = command.add_flag("--fresh", arguments.options.fresh,
+                                 "delete earlier tuning results in the folder first");
+  command.add_flag("--resume", arguments.resume, "continue an interrupted tuning run (default)")
+      ->excludes(fresh);
+  add_plugin_path(command, arguments.overrides);
+  set_example(command,
+              "altiplan tune configs/pipelines/fusion_paper_astar_angles.yaml --out tuned --jobs 2 "
+              "\\\n    --over 'steps.0.with.{weight_g,weight_h}=simplex' --metric length_m");
 }
 }  // namespace altiplan::cli

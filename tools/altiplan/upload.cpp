@@ -24,17 +24,17 @@ int upload_result(const UploadArguments& arguments) {
 }  // namespace
 
 void add_upload(App& app, Action& action) {
-  App* command = app.add_subcommand(
-      "upload", "judge a result's route, upload it to a vehicle and compare what that holds");
-  auto arguments = std::make_shared<UploadArguments>();
-  add_link_options(*command, "--to", arguments->link);
-  add_route_export(*command, arguments->route);
-  add_no_fence(*command, arguments->no_fence);
-  set_example(*command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
-  command->callback([&action, arguments] {
-    arguments->route.options.format = kit::MissionFile::Format::qgc_plan;
-    finish_options(arguments->route);
-    action = [arguments] { return upload_result(*arguments); };
-  });
+  const auto prepare = [](UploadArguments& arguments) {
+    arguments.route.options.format = kit::MissionFile::Format::qgc_plan;
+    finish_options(arguments.route);
+  };
+  auto [command, arguments] = add_command<UploadArguments>(
+      app, action, "upload",
+      "judge a result's route, upload it to a vehicle and compare what that holds", upload_result,
+      prepare);
+  add_link_options(command, "--to", arguments.link);
+  add_route_export(command, arguments.route);
+  add_no_fence(command, arguments.no_fence);
+  set_example(command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
 }
 }  // namespace altiplan::cli

@@ -119,29 +119,24 @@ int explain(const ValidateArguments& arguments) {
 }  // namespace
 
 void add_validate(App& app, Action& action) {
-  App* command = app.add_subcommand(
-      "validate", "check pipeline, scenario, study and paper files without running them");
-  auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("files", arguments->files, "pipeline, scenario, study and paper files (YAML)")
+  auto [command, arguments] = add_command<ValidateArguments>(
+      app, action, "validate",
+      "check pipeline, scenario, study and paper files without running them", validate);
+  command.add_option("files", arguments.files, "pipeline, scenario, study and paper files (YAML)")
       ->required();
-  command->add_flag("--build", arguments->builds,
-                    "also build the world, so that the contents of its files are checked");
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan validate configs/*/*.yaml");
-  command->callback(
-      [&action, arguments] { action = [arguments] { return validate(*arguments); }; });
+  command.add_flag("--build", arguments.builds,
+                   "also build the world, so that the contents of its files are checked");
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan validate configs/*/*.yaml");
 }
 
 void add_explain(App& app, Action& action) {
-  App* command = app.add_subcommand(
-      "explain", "print a pipeline with all defaults and the source of each value");
-  auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("pipeline", arguments->files, "pipeline file (YAML)")
-      ->required()
-      ->expected(1);
-  add_overrides(*command, arguments->overrides);
-  command->add_flag("--json", arguments->json, "print as JSON");
-  set_example(*command, "altiplan explain configs/pipelines/ridge_crossing.yaml");
-  command->callback([&action, arguments] { action = [arguments] { return explain(*arguments); }; });
+  auto [command, arguments] = add_command<ValidateArguments>(
+      app, action, "explain", "print a pipeline with all defaults and the source of each value",
+      explain);
+  command.add_option("pipeline", arguments.files, "pipeline file (YAML)")->required()->expected(1);
+  add_overrides(command, arguments.overrides);
+  command.add_flag("--json", arguments.json, "print as JSON");
+  set_example(command, "altiplan explain configs/pipelines/ridge_crossing.yaml");
 }
 }  // namespace altiplan::cli

@@ -168,47 +168,38 @@ int view(const ViewArguments& arguments) {
 }  // namespace
 
 void add_view(App& app, Action& action) {
-  App* command = app.add_subcommand("view", "show results in a 3-D page that works offline");
-  auto arguments = std::make_shared<ViewArguments>();
-  command
-      ->add_option("results", arguments->results,
-                   "result files of altiplan run, all in the same world (JSON)")
-      ->required();
-  command->add_option("-o,--out", arguments->page, "write the page to this file (HTML)")
-      ->type_name("FILE");
-  auto* png =
-      command
-          ->add_option("--png", arguments->png,
-                       "write a picture of the page, rendered by Chromium; without Chromium a top "
-                       "view as SVG")
-          ->type_name("FILE");
-  command
-      ->add_option("--cut", arguments->cut_m,
-                   "hide everything but routes above this altitude in the PNG (m above sea level)")
-      ->type_name("M")
-      ->check(number_from(-1e6, 1e6))
-      ->needs(png);
-  command
-      ->add_option("--svg", arguments->svg, "write a top view with the routes' altitude profiles")
-      ->type_name("FILE");
-  auto* mp4 = command
-                  ->add_option("--mp4", arguments->mp4,
-                               "write a film of the flight from behind the vehicle, rendered by "
-                               "Chromium and ffmpeg")
-                  ->type_name("FILE");
-  command
-      ->add_option("--mp4-seconds", arguments->mp4_seconds,
-                   "length of the film (s); default: a thirtieth of the flight, but 20 to 120 s")
-      ->type_name("S")
-      ->check(number_from(1, 600))
-      ->needs(mp4);
-  add_plugin_path(*command, arguments->overrides);
-  set_example(*command, "altiplan view result.json -o page.html");
-  command->callback([&action, arguments] {
-    if (!arguments->page && !arguments->png && !arguments->svg && !arguments->mp4) {
+  const auto prepare = [](ViewArguments& arguments) {
+    if (!arguments.page && !arguments.png && !arguments.svg && !arguments.mp4) {
       throw UsageError{"-o, --png, --svg or --mp4 is required"};
     }
-    action = [arguments] { return view(*arguments); };
-  });
+  };
+  auto [command, arguments] = add_command<ViewArguments>(
+      app, action, "view", "show results in a 3-D page that works offline", view, prepare);
+  command
+      .add_option("results", arguments.results,
+                  "result files of altiplan run, all in the same world (JSON)")
+      ->required();
+  command.add_option("-o,--out FILE", arguments.page, "write the page to this file (HTML)");
+  auto* png = command.add_option(
+      "--png FILE", arguments.png,
+      "write a picture of the page, rendered by Chromium; without Chromium a top "
+      "view as SVG");
+  command
+      .add_option("--cut M", arguments.cut_m,
+                  "hide everything but routes above this altitude in the PNG (m above sea level)")
+      ->check(number_from(-1e6, 1e6))
+      ->needs(png);
+  command.add_option("--svg FILE", arguments.svg,
+                     "write a top view with the routes' altitude profiles");
+  auto* mp4 = command.add_option("--mp4 FILE", arguments.mp4,
+                                 "write a film of the flight from behind the vehicle, rendered by "
+                                 "Chromium and ffmpeg");
+  command
+      .add_option("--mp4-seconds S", arguments.mp4_seconds,
+                  "length of the film (s); default: a thirtieth of the flight, but 20 to 120 s")
+      ->check(number_from(1, 600))
+      ->needs(mp4);
+  add_plugin_path(command, arguments.overrides);
+  set_example(command, "altiplan view result.json -o page.html");
 }
 }  // namespace altiplan::cli

@@ -50,7 +50,6 @@ class Subcommands {
 void add_airspace(Subcommands& all);
 void add_ants(Subcommands& all);
 void add_any_angle(Subcommands& all);
-void add_bodies(Subcommands& all);
 void add_detours(Subcommands& all);
 void add_dubins(Subcommands& all);
 void add_field(Subcommands& all);
@@ -64,5 +63,4 @@ void add_replan(Subcommands& all);
 void add_sampling(Subcommands& all);
 void add_search(Subcommands& all);
 void add_terrain(Subcommands& all);
-void add_wing_flights(Subcommands& all);
 }  // namespace altiplan::bench

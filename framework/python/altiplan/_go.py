@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A first route between two points of an elevation model, as `altiplan go` plans it."""
 import math
-import numbers
 import os
 from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Union
 
@@ -21,9 +20,7 @@ def _place(value: Any, name: str) -> str:
         raise ValueError(f"{name}: expected (longitude, latitude) in degrees, or also metres above ground, "
                          f"found {value!r}")
     for part in parts:
-        if isinstance(part, bool) or not isinstance(part, numbers.Real):
-            raise TypeError(f"{name}: expected numbers, found {type(part).__name__}")
-        if not math.isfinite(part):
+        if not math.isfinite(_values.real(part, name, "numbers")):
             raise ValueError(f"{name}: expected finite numbers, found {part}")
     return ",".join(repr(float(part)) for part in parts)
 
@@ -54,14 +51,8 @@ def go(terrain: Union[_Path, Sequence[_Path]], start: Sequence[float], goal: Seq
     arguments += [f"--avoid={file}" for file in _files(avoid, "avoid")]
     for name, metres in (("min-agl", min_agl), ("max-agl", max_agl), ("wing", wing)):
         if metres is not None:
-            arguments.append(f"--{name}={_metres(metres, name.replace('-', '_'))}")
+            arguments.append(f"--{name}={_values.real(metres, name.replace('-', '_'))!r}")
     if planner is not None:
         arguments.append(f"--planner={_values.text(planner, 'planner')}")
     _program.call(*arguments, results=(0, _NO_ROUTE))
     return run(os.path.join(folder, "pipeline.yaml"))
-
-
-def _metres(value: Any, name: str) -> str:
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name}: expected a number, found {type(value).__name__}")
-    return repr(float(value))

@@ -93,10 +93,10 @@ def _announced(kind: str, name: str, sentence: str,
         raise TypeError(f"the parameters of '{name}': expected a class below @altiplan.parameters, "
                         f"found {params!r}")
 
-    def announce(made_of: _Made) -> _Made:
-        offered.append({"kind": kind, "name": name, "sentence": sentence, "class": made_of,
+    def announce(plugin_class: _Made) -> _Made:
+        offered.append({"kind": kind, "name": name, "sentence": sentence, "class": plugin_class,
                         "params": params})
-        return made_of
+        return plugin_class
 
     return announce
 
@@ -149,9 +149,9 @@ def _expect_allowed(value: typing.Any, declared: typing.Mapping[str, typing.Any]
 
 def _described_field(field: typing.Any, hint: typing.Any) -> typing.Dict[str, typing.Any]:
     kind, optional = _type_of(hint)
-    made = field.default_factory is not dataclasses.MISSING
-    required = not made and field.default is dataclasses.MISSING
-    default = field.default_factory() if made else None if required else field.default
+    has_factory = field.default_factory is not dataclasses.MISSING
+    required = not has_factory and field.default is dataclasses.MISSING
+    default = field.default_factory() if has_factory else None if required else field.default
     declared = {**parameter(doc="").metadata, **field.metadata}
     if default is not None:
         default = _plain(default, kind)
@@ -186,7 +186,8 @@ def _typed(value: typing.Any, kind: str) -> typing.Any:
     return types_of[kind](value) if kind in types_of else value
 
 
-def made(plugin: typing.Dict[str, typing.Any], values: typing.Dict[str, typing.Any]) -> typing.Any:
+def constructed(plugin: typing.Dict[str, typing.Any],
+                values: typing.Dict[str, typing.Any]) -> typing.Any:
     """An object of the plugin's class; `values` are checked."""
     hints = typing.get_type_hints(plugin["params"])
     params = plugin["params"](**{name: _typed(value, _type_of(hints[name])[0])
@@ -196,8 +197,8 @@ def made(plugin: typing.Dict[str, typing.Any], values: typing.Dict[str, typing.A
     return plugin["class"](params) if takes else plugin["class"]()
 
 
-def told(kind: str, plugin: typing.Any) -> typing.Dict[str, typing.Any]:
-    """What an object says of itself."""
+def properties_of(kind: str, plugin: typing.Any) -> typing.Dict[str, typing.Any]:
+    """The methods and traits of an object."""
     needs = {"planner": ("plan",), "smoother": ("smooth",), "environment": ("build",),
              "constraint": ("tighten", "admits", "violations")}[kind]
     methods = [name for name in needs if callable(getattr(plugin, name, None))]

@@ -45,11 +45,11 @@ def call(*arguments: str, results: Sequence[int] = (0,)) -> List[str]:
     with subprocess.Popen([_path(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, start_new_session=True) as process:
         try:
-            _, said = process.communicate()
+            _, errors = process.communicate()
         except BaseException:
             _stop(process)
             raise
-    text = said.decode("utf-8", "replace")
+    text = errors.decode("utf-8", "replace")
     if process.returncode == _INTERRUPTED:  # by somebody else's signal
         raise KeyboardInterrupt
     if process.returncode not in results:

@@ -17,7 +17,7 @@ _BAND = ("above_ground", "min_m", "max_m")
 _LONGEST = 2000  # characters of a message
 _CONTROLS = dict.fromkeys([*range(32), *range(127, 160)], " ")  # which terminals would obey
 _HIGHEST_M = 100_000.0
-_MOST_VIOLATIONS = 10_000  # of a route; more tell nothing
+_MAX_VIOLATIONS = 10_000  # of a route; more tell nothing
 _ANGLES = {"max_turn": math.pi, "max_turn_in_space": math.pi, "max_climb": math.pi / 2,
            "max_descent": math.pi / 2}
 
@@ -29,10 +29,8 @@ def text(value: typing.Any) -> str:
 
 def number(value: typing.Any, name: str) -> float:
     """A finite number."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name}: expected a number, found {type(value).__name__}")
     try:
-        found = float(value)
+        found = _values.real(value, name)
     except OverflowError:  # of a whole number
         found = math.inf
     if not math.isfinite(found):
@@ -152,16 +150,16 @@ def admitted(returned: typing.Any) -> bool:
 
 def limits(returned: typing.Any) -> _Json:
     """What `tighten` returns; None of a limit, or of all, tightens nothing."""
-    told: typing.Any = {} if returned is None else returned
-    if not isinstance(told, dict):
-        raise TypeError(f"tighten: expected a dict of limits, found {type(told).__name__}")
-    for name in told:
+    given: typing.Any = {} if returned is None else returned
+    if not isinstance(given, dict):
+        raise TypeError(f"tighten: expected a dict of limits, found {type(given).__name__}")
+    for name in given:
         if name not in (*_LIMITS, "altitude"):
             raise ValueError(f"tighten: there is no limit {name!r}: expected altitude, "
                              + ", ".join(_LIMITS))
-    values: _Json = {name: _limit(value, name) for name, value in told.items()
+    values: _Json = {name: _limit(value, name) for name, value in given.items()
                      if name != "altitude" and value is not None}
-    return {**values, "altitude": [_band(band) for band in told.get("altitude") or ()]}
+    return {**values, "altitude": [_band(band) for band in given.get("altitude") or ()]}
 
 
 def violations(returned: typing.Any, count: int) -> typing.List[typing.Any]:
@@ -170,7 +168,7 @@ def violations(returned: typing.Any, count: int) -> typing.List[typing.Any]:
         raise TypeError("violations: expected a list, empty where nothing is violated, found "
                         + type(returned).__name__)
     found = []
-    for one in returned[:_MOST_VIOLATIONS]:
+    for one in returned[:_MAX_VIOLATIONS]:
         if not isinstance(one, (list, tuple)) or len(one) != 4:
             raise ValueError(f"violations: expected (at, value, limit, message), found {one!r}")
         at, value, limit, message = one

@@ -155,14 +155,16 @@ class Study:
         """The tables of the report by name: `success`, `success-pairs`, `metrics`, `verdicts`,
         `pairs-METRIC`, `scenarios`, … Their values are as the report words them; a column of numbers
         is one of numbers. Their numbers in full are in `figures`."""
-        return {os.path.basename(name).rpartition(".")[0]: _frame(_rows_of(name, text))
-                for name, text in self._report().items() if name.startswith("tables/")}
+        return self._frames("tables/")
 
     def figures(self) -> Dict[str, "pandas.DataFrame"]:
         """The numbers that the report's figures draw, by name: `success`, `boxes-METRIC`,
         `pairs-METRIC`, `ranks-METRIC`, … (docs/reference/report.md)."""
+        return self._frames("figures/")
+
+    def _frames(self, folder: str) -> Dict[str, "pandas.DataFrame"]:
         return {os.path.basename(name).rpartition(".")[0]: _frame(_rows_of(name, text))
-                for name, text in self._report().items() if name.startswith("figures/")}
+                for name, text in self._report().items() if name.startswith(folder)}
 
     def _repr_html_(self) -> str:
         """The report's page in a frame, which works offline."""

@@ -57,14 +57,24 @@ def assignments(values: "Mapping[str, Any]") -> List[str]:
     return texts
 
 
+def _expect_real(value: Any, name: str, wanted: str) -> None:
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"{name}: expected {wanted}, found {type(value).__name__}")
+
+
+def real(value: Any, name: str, wanted: str = "a number") -> float:
+    """A number that is no Boolean."""
+    _expect_real(value, name, wanted)
+    return float(value)
+
+
 def point(value: Any, name: str) -> List[float]:
     """Three finite numbers."""
     numbers_of = plain_value(value, name) if hasattr(value, "tolist") else value
     if not isinstance(numbers_of, (list, tuple)) or len(numbers_of) != 3:
         raise ValueError(f"{name}: expected [x, y, z] in metres, found {value!r}")
     for number in numbers_of:
-        if isinstance(number, bool) or not isinstance(number, numbers.Real):
-            raise TypeError(f"{name}: expected numbers, found {type(number).__name__}")
+        _expect_real(number, name, "numbers")
     plain: List[float] = plain_value(numbers_of, name)
     return plain
 
@@ -103,9 +113,7 @@ def seed(value: Any) -> Optional[int]:
 
 def seconds(value: Any, name: str) -> float:
     """A time that a step may take."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name}: expected a number of seconds, found {type(value).__name__}")
-    number = float(value)
+    number = real(value, name, "a number of seconds")
     if not 0.001 <= number <= 1e8:
         raise ValueError(f"{name}: expected a number from 0.001 to 1e8, found {value}")
     return number
@@ -113,9 +121,7 @@ def seconds(value: Any, name: str) -> float:
 
 def fraction(value: Any, name: str) -> float:
     """A part of a whole."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name}: expected a fraction, found {type(value).__name__}")
-    number = float(value)
+    number = real(value, name, "a fraction")
     if not 0 < number <= 1:
         raise ValueError(f"{name}: expected a number above 0, up to 1, found {value}")
     return number

@@ -22,7 +22,7 @@ _Json = typing.Dict[str, typing.Any]
 _Message = typing.Tuple[_Json, "array[float]"]
 _Answer = typing.Tuple[_Json, typing.Iterable[float]]
 _LENGTHS = struct.Struct("<II")  # bytes of the header, numbers after it
-_MOST_BYTES, _MOST_NUMBERS = 1 << 28, 1 << 27
+_MAX_BYTES, _MAX_NUMBERS = 1 << 28, 1 << 27
 _LONGEST_TRACE = 10_000  # characters
 
 
@@ -30,9 +30,9 @@ def packed(header: _Json, numbers: typing.Any = ()) -> bytes:
     """A message; ValueError for one that the program would not take."""
     text = json.dumps(header, ensure_ascii=False).encode("utf-8", "replace")
     values: "array[float]" = numbers if isinstance(numbers, array) else array("d", numbers)
-    if len(text) > _MOST_BYTES or len(values) > _MOST_NUMBERS:
+    if len(text) > _MAX_BYTES or len(values) > _MAX_NUMBERS:
         raise ValueError(f"an answer of {len(text)} bytes and {len(values)} numbers: expected at most "
-                         f"{_MOST_BYTES} and {_MOST_NUMBERS}")
+                         f"{_MAX_BYTES} and {_MAX_NUMBERS}")
     return _LENGTHS.pack(len(text), len(values)) + text + values.tobytes()
 
 
@@ -199,8 +199,8 @@ class Worker:
         if "make" in message:
             plugin = next(one for one in self._api.offered
                           if (one["kind"], one["name"]) == (message["kind"], message["make"]))
-            self._object = self._api.made(plugin, message["with"])
-            return self._api.told(plugin["kind"], self._object), ()
+            self._object = self._api.constructed(plugin, message["with"])
+            return self._api.properties_of(plugin["kind"], self._object), ()
         self._connection.stopped = False
         return self._called(next(iter(message)), message, numbers)
 

@@ -59,36 +59,45 @@ class ArenaWriter {
     for (const ArenaColumn& column : columns_) {
       columns += ", " + quoted(column.name) + " " + column.type;
     }
-    const std::string schema =
-        "CREATE TABLE experiments(id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512), "
-        "totaltime REAL, timelimit REAL, memorylimit REAL, runcount INTEGER, version VARCHAR(128), "
-        "hostname VARCHAR(1024), cpuinfo TEXT, date DATETIME, seed VARCHAR(24), setup TEXT" +
-        parameters +
-        ");"
-        "CREATE TABLE plannerConfigs(id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512) NOT "
-        "NULL, settings TEXT);"
-        "CREATE TABLE enums(name VARCHAR(512), value INTEGER, description TEXT, PRIMARY KEY(name, "
-        "value));"
-        "CREATE TABLE runs(id INTEGER PRIMARY KEY AUTOINCREMENT, experimentid INTEGER, plannerid "
-        "INTEGER" +
-        columns +
-        ", FOREIGN KEY(experimentid) REFERENCES experiments(id) ON DELETE CASCADE, "
-        "FOREIGN KEY(plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);"
-        "CREATE TABLE progress(runid INTEGER, time REAL, PRIMARY KEY(runid, time), FOREIGN "
-        "KEY(runid) REFERENCES runs(id) ON DELETE CASCADE);"
-        // OMPL's: for each planner the settings that solve most, then the fastest.
-        "CREATE VIEW bestPlannerConfigsPerExperiment AS SELECT plannerid, experimentid, "
-        "MAX(avg_solved) AS avg_solved, avg_total_time FROM (SELECT plannerid, "
-        "plannerConfigs.name AS planner, experimentid, AVG(solved) AS avg_solved, AVG(time) AS "
-        "avg_total_time FROM runs JOIN plannerConfigs ON plannerConfigs.id = plannerid GROUP BY "
-        "plannerid, experimentid) GROUP BY planner, experimentid ORDER BY avg_solved DESC, "
-        "avg_total_time ASC;"
-        "CREATE VIEW bestPlannerConfigs AS SELECT plannerid, MAX(avg_solved) AS avg_solved, "
-        "avg_total_time FROM (SELECT plannerid, plannerConfigs.name AS planner, AVG(solved) AS "
-        "avg_solved, AVG(time) AS avg_total_time FROM runs JOIN plannerConfigs ON "
-        "plannerConfigs.id = plannerid GROUP BY plannerid) GROUP BY planner ORDER BY avg_solved "
-        "DESC, avg_total_time ASC;";
-    database_.run(schema.c_str());
+    database_.run(R"(
+      CREATE TABLE experiments(id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512),
+        totaltime REAL, timelimit REAL, memorylimit REAL, runcount INTEGER, version VARCHAR(128),
+        hostname VARCHAR(1024), cpuinfo TEXT, date DATETIME, seed VARCHAR(24), setup TEXT)" +
+                  parameters + R"();
+      CREATE TABLE plannerConfigs(id INTEGER PRIMARY KEY AUTOINCREMENT, name VARCHAR(512) NOT NULL,
+        settings TEXT);
+      CREATE TABLE enums(name VARCHAR(512), value INTEGER, description TEXT,
+        PRIMARY KEY(name, value));
+      CREATE TABLE runs(id INTEGER PRIMARY KEY AUTOINCREMENT, experimentid INTEGER,
+        plannerid INTEGER)" +
+                  columns + R"(,
+        FOREIGN KEY(experimentid) REFERENCES experiments(id) ON DELETE CASCADE,
+        FOREIGN KEY(plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);
+      CREATE TABLE progress(runid INTEGER, time REAL, PRIMARY KEY(runid, time),
+        FOREIGN KEY(runid) REFERENCES runs(id) ON DELETE CASCADE);)");
+    // OMPL's: for each planner the settings that solve most, then the fastest.
+    database_.run(R"(
+      CREATE VIEW bestPlannerConfigsPerExperiment AS
+        SELECT plannerid, experimentid, MAX(avg_solved) AS avg_solved, avg_total_time FROM
+          (SELECT plannerid, plannerConfigs.name AS planner, experimentid,
+            AVG(solved) AS avg_solved, AVG(time) AS avg_total_time FROM runs
+            JOIN plannerConfigs ON plannerConfigs.id = plannerid GROUP BY plannerid, experimentid)
+        GROUP BY planner, experimentid ORDER BY avg_solved DESC, avg_total_time ASC;
+      CREATE VIEW bestPlannerConfigs AS
+        SELECT plannerid, MAX(avg_solved) AS avg_solved, avg_total_time FROM
+          (SELECT plannerid, plannerConfigs.name AS planner,
+            AVG(solved) AS avg_solved, AVG(time) AS avg_total_time FROM runs
+            JOIN plannerConfigs ON plannerConfigs.id = plannerid GROUP BY plannerid)
+        GROUP BY planner ORDER BY avg_solved DESC, avg_total_time ASC;)");
+  }
+
+  /// For a row with these columns, and as many more.
+  Statement insertion(const std::string& table, std::size_t columns, std::size_t more = 0) const {
+    std::string sql = "INSERT INTO " + table + " VALUES(?";
+    for (std::size_t n = 1; n < columns + more; ++n) {
+      sql += ", ?";
+    }
+    return database_.prepare(sql + ")");
   }
 
   double number(const RunRow& row, const std::string& column) const {
@@ -97,11 +106,8 @@ class ArenaWriter {
   }
 
   void add_experiments() const {
-    std::string sql = "INSERT INTO experiments VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?";
-    for (std::size_t n = 0; n < experiments_.parameters.size(); ++n) {
-      sql += ", ?";
-    }
-    Statement insert = database_.prepare((sql + ")").c_str());
+    constexpr int kColumns = 12;
+    Statement insert = insertion("experiments", kColumns, experiments_.parameters.size());
     std::vector<double> seconds(data_.scenarios.size(), 0);
     std::vector<std::int64_t> repetitions(data_.scenarios.size(), 0);
     for (const RunRow& row : data_.rows) {
@@ -115,17 +121,14 @@ class ArenaWriter {
     std::replace(date.begin(), date.end(), 'T', ' ');
     const StudyBudget& budget = data_.file.budget;
     for (std::size_t n = 0; n < data_.scenarios.size(); ++n) {
-      insert.bind(1, std::int64_t(n + 1)).bind(2, experiments_.experiments[n].name);
-      insert.bind(3, seconds[n]).bind(4, budget.time_s.value_or(budget.wall_s));
-      insert.bind(5, budget.memory_mb).bind(6, repetitions[n]);
-      insert.bind(7, "altiplan " + session.version).bind(8, session.host);
-      insert.bind(9, session.cpu + "\n" + std::to_string(session.cores) + " cores\n");
-      insert.bind(10, date).bind(11, std::to_string(data_.file.seed));
-      insert.bind(12, settings(data_.scenarios[n]));
-      for (std::size_t p = 0; p < experiments_.parameters.size(); ++p) {
-        const std::string& set = experiments_.experiments[n].parameters[p];
+      const ArenaExperiment& experiment = experiments_.experiments[n];
+      insert.bind(n + 1, experiment.name, seconds[n], budget.time_s.value_or(budget.wall_s),
+                  budget.memory_mb, repetitions[n], "altiplan " + session.version, session.host,
+                  session.cpu + "\n" + std::to_string(session.cores) + " cores\n", date,
+                  std::to_string(data_.file.seed), settings(data_.scenarios[n]));
+      for (int column = kColumns; const std::string& value : experiment.parameters) {
         // The column's type converts a numeric text to a number.
-        set.empty() ? insert.bind_null(int(13 + p)) : insert.bind(int(13 + p), set);
+        value.empty() ? insert.set(++column, kNothing) : insert.set(++column, value);
       }
       insert.run();
     }
@@ -153,7 +156,7 @@ class ArenaWriter {
   }
 
   void add_planners() const {
-    Statement insert = database_.prepare("INSERT INTO plannerConfigs VALUES(?, ?, ?)");
+    Statement insert = insertion("plannerConfigs", 3);
     for (std::size_t n = 0; n < data_.pipelines.size(); ++n) {
       // Planner Arena removes these words of OMPL from names, which could merge two of ours.
       std::string name = data_.pipelines[n].name;
@@ -163,31 +166,24 @@ class ArenaWriter {
           name.replace(at + std::string_view(word).size() - 1, 1, "-");
         }
       }
-      insert.bind(1, std::int64_t(n + 1)).bind(2, name);
-      insert.bind(3, settings(data_.pipelines[n]) + steps_of(n)).run();
+      insert.run(n + 1, name, settings(data_.pipelines[n]) + steps_of(n));
     }
   }
 
   void add_statuses() const {
-    Statement insert = database_.prepare("INSERT INTO enums VALUES('status', ?, ?)");
+    Statement insert = insertion("enums", 3);
     for (const ArenaStatus& status : arena_statuses()) {
-      insert.bind(1, std::int64_t(status.value)).bind(2, std::string_view(status.description));
-      insert.run();
+      insert.run("status", status.value, status.description);
     }
   }
 
   void add_runs() const {
-    std::string sql = "INSERT INTO runs VALUES(?, ?, ?";
-    for (std::size_t n = 0; n < columns_.size(); ++n) {
-      sql += ", ?";
-    }
-    Statement insert = database_.prepare((sql + ")").c_str());
+    Statement insert = insertion("runs", 3, columns_.size());
     for (std::size_t n = 0; n < data_.rows.size(); ++n) {
       const RunRow& row = data_.rows[n];
-      insert.bind(1, std::int64_t(n + 1)).bind(2, std::int64_t(row.scenario + 1));
-      insert.bind(3, std::int64_t(row.pipeline + 1));
-      for (std::size_t c = 0; c < columns_.size(); ++c) {
-        insert.bind(int(4 + c), cell(row, columns_[c]));
+      insert.bind(n + 1, row.scenario + 1, row.pipeline + 1);
+      for (int index = 3; const ArenaColumn& column : columns_) {
+        insert.set(++index, cell(row, column));
       }
       insert.run();
     }

@@ -44,7 +44,7 @@ Settings settings_of(const StoredVariant& variant) {
 }
 
 /// The scenario files whose variants all set the same keys, which distinguish them.
-std::set<std::string> told_apart(const StudyData& data) {
+std::set<std::string> files_with_parameters(const StudyData& data) {
   std::map<std::string, std::set<std::vector<std::string>>> keys;
   for (const StoredVariant& scenario : data.scenarios) {
     std::vector<std::string> set;
@@ -107,7 +107,7 @@ std::vector<ArenaColumn> arena_columns(const StudyData& data, ColumnNames& names
 }
 
 ArenaExperiments arena_experiments(const StudyData& data, ColumnNames& names) {
-  const std::set<std::string> by_parameters = told_apart(data);
+  const std::set<std::string> by_parameters = files_with_parameters(data);
   ArenaExperiments all;
   std::vector<Settings> settings;
   for (const StoredVariant& scenario : data.scenarios) {

@@ -26,37 +26,22 @@ double value_of(const RunRow& run, const std::string& name, std::size_t column) 
 }
 
 double of_operands(Kind kind, double a, double b) {
-  switch (kind) {
-    case Kind::add:
-      return a + b;
-    case Kind::subtract:
-      return a - b;
-    case Kind::multiply:
-      return a * b;
-    case Kind::divide:
-      return a / b;
-    default:
-      break;
+  if (kind <= Kind::divide) {
+    return kind == Kind::add        ? a + b
+           : kind == Kind::subtract ? a - b
+           : kind == Kind::multiply ? a * b
+                                    : a / b;
   }
   if (std::isnan(a) || std::isnan(b)) {
     return kNone;  // neither true nor false
   }
-  switch (kind) {
-    case Kind::less:
-      return a < b ? 1 : 0;
-    case Kind::less_or_equal:
-      return a <= b ? 1 : 0;
-    case Kind::greater:
-      return a > b ? 1 : 0;
-    case Kind::greater_or_equal:
-      return a >= b ? 1 : 0;
-    case Kind::equal:
-      return a == b ? 1 : 0;
-    case Kind::both:
-      return a != 0 && b != 0 ? 1 : 0;
-    default:
-      return a != 0 || b != 0 ? 1 : 0;
-  }
+  return kind == Kind::less               ? a < b
+         : kind == Kind::less_or_equal    ? a <= b
+         : kind == Kind::greater          ? a > b
+         : kind == Kind::greater_or_equal ? a >= b
+         : kind == Kind::equal            ? a == b
+         : kind == Kind::both             ? a != 0 && b != 0
+                                          : a != 0 || b != 0;
 }
 
 }  // namespace

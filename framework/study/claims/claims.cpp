@@ -86,17 +86,8 @@ Verdict verdict_of(const ClaimQuantity& quantity, const ClaimRange& range,
 }  // namespace
 
 std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::holds:
-      return "holds";
-    case Verdict::fails:
-      return "fails";
-    case Verdict::undecided:
-      return "undecided";
-    case Verdict::no_data:
-      break;
-  }
-  return "no data";
+  constexpr std::string_view kNames[] = {"holds", "fails", "undecided", "no data"};
+  return kNames[std::size_t(verdict)];
 }
 
 std::vector<Problem> check_claim(const ClaimEntry& claim, const std::vector<std::string>& pipelines,

@@ -51,15 +51,15 @@ class Verdicts {
   double confidence_;
 };
 
-constexpr std::size_t kMost = 10'000;
+constexpr std::size_t kMaxUnits = 10'000;
 
-/// The first number of units from `least` on for which the condition is met; kMost if none.
+/// The first number of units from `min_units` on for which the condition is met; kMaxUnits if none.
 template <class Condition>
-std::size_t first_from(std::size_t least, const Condition& is_met) {
-  while (least < kMost && !is_met(least)) {
-    ++least;
+std::size_t first_from(std::size_t min_units, const Condition& is_met) {
+  while (min_units < kMaxUnits && !is_met(min_units)) {
+    ++min_units;
   }
-  return least;
+  return min_units;
 }
 
 std::string too_few(const Units& units) {
@@ -80,10 +80,10 @@ std::string of_independent(const Verdicts& verdicts, const Units& units,
            confidence;
   }
   const std::size_t enough = first_from(units.count, holds);
-  return enough < kMost
+  return enough < kMaxUnits
              ? "cannot hold: " + too_few(units) + std::to_string(enough) + " would do" + confidence
              : "cannot hold: the interval of a share is too wide, even of " +
-                   std::to_string(kMost) + (units.of_scenarios ? " scenarios" : " repetitions");
+                   std::to_string(kMaxUnits) + (units.of_scenarios ? " scenarios" : " repetitions");
 }
 
 /// With repetitions, the interval is Wilson's if the scenarios all agree, else the bootstrap's,

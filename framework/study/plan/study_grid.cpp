@@ -71,8 +71,8 @@ std::vector<Assignment> values_of(const Value::Entry& entry, const std::string& 
       all.push_back({entry.key, flow_text(item), short_value(item), item.where});
     }
   } else if (const auto range = range_of(value, key)) {
-    const std::uint64_t most = std::uint64_t(range->second) - std::uint64_t(range->first);
-    for (std::uint64_t i = 0; i <= most; ++i) {
+    const std::uint64_t last = std::uint64_t(range->second) - std::uint64_t(range->first);
+    for (std::uint64_t i = 0; i <= last; ++i) {
       const std::string text = std::to_string(std::int64_t(std::uint64_t(range->first) + i));
       all.push_back({entry.key, text, text, value.where});
     }

@@ -82,7 +82,7 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
   std::map<std::pair<std::size_t, std::size_t>, std::string> pairs;
   for (PlannedRun& run : plan.runs) {
     const std::pair pair(run.scenario, run.pipeline);
-    if (pairs.size() >= selection.most_checked && !pairs.contains(pair)) {
+    if (pairs.size() >= selection.max_checked && !pairs.contains(pair)) {
       ++plan.unchecked;
       continue;
     }

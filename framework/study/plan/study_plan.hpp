@@ -57,8 +57,9 @@ struct StudySelection {
   int shards = 1;
   std::set<std::string> pipelines = {};  ///< names of variants; empty: all
   std::string scenarios = {};            ///< Variant::of; "": all
-  /// Most pairs of scenario and pipeline that are checked; the runs of others get no key.
-  std::size_t most_checked = std::size_t(-1);
+  /// Maximum number of pairs of scenario and pipeline that are checked; the runs of others get no
+  /// key.
+  std::size_t max_checked = std::size_t(-1);
 };
 
 /// Reads and checks the study, and every pair of pipeline and scenario in it; throws ConfigError

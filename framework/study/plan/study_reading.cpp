@@ -212,8 +212,8 @@ void StudyVariants::add(std::vector<Variant>& all, const std::string& of, const 
 }
 
 Problem StudyVariants::placed(const Problem& problem) const {
-  const auto found = said_at_.find(problem.where.override_text);
-  if (problem.where.override_text.empty() || found == said_at_.end()) {
+  const auto found = assigned_at_.find(problem.where.override_text);
+  if (problem.where.override_text.empty() || found == assigned_at_.end()) {
     return problem;
   }
   return {found->second.first, found->second.second, problem.key + ": " + problem.message};

@@ -18,7 +18,7 @@ class StudyProblems {
     add({std::move(where), std::move(key), std::move(message)});
   }
   void add(const Problem& problem) {
-    if (said_.insert(problem.text()).second) {
+    if (reported_.insert(problem.text()).second) {
       all_.push_back(problem);
     }
   }
@@ -30,7 +30,7 @@ class StudyProblems {
 
  private:
   std::vector<Problem> all_;
-  std::set<std::string> said_;
+  std::set<std::string> reported_;
 };
 
 /// Expands the study's entries to variants, and keeps the line of the study that each value is
@@ -45,7 +45,7 @@ class StudyVariants {
 
   /// Keeps the location of an assignment made by the study itself.
   void remember(const std::string& assignment, const Location& where, const std::string& key) {
-    said_at_["--set " + assignment] = {where, key};
+    assigned_at_["--set " + assignment] = {where, key};
   }
 
   /// The problem with the location in the study where its value is set.
@@ -53,7 +53,7 @@ class StudyVariants {
 
  private:
   StudyProblems& problems_;
-  std::map<std::string, std::pair<Location, std::string>> said_at_;
+  std::map<std::string, std::pair<Location, std::string>> assigned_at_;
   std::set<std::string> ids_;
   std::set<std::string> names_;
 };

@@ -95,19 +95,8 @@ ReproducedFigure compare_verdict(const PaperFigure& figure, const JudgedClaim& f
 }  // namespace
 
 const char* name(Mark mark) {
-  switch (mark) {
-    case Mark::equal:
-      return "equal";
-    case Mark::within:
-      return "within";
-    case Mark::time:
-      return "time";
-    case Mark::too_few:
-      return "too few";
-    case Mark::differs:
-      break;
-  }
-  return "DIFFERS";
+  constexpr const char* kNames[] = {"equal", "within", "time", "too few", "DIFFERS"};
+  return kNames[std::size_t(mark)];
 }
 
 ReproducedFigure compare_figure(const StudyData& data, const PaperFigure& figure, bool is_sample) {

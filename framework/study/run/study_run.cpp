@@ -19,7 +19,7 @@ namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostProbes = 50;  // of pipelines: a dry run should not take long
+constexpr std::size_t kMaxProbes = 50;  // of pipelines: a dry run should not take long
 
 using Clock = std::chrono::steady_clock;
 
@@ -192,10 +192,11 @@ class Study {
 
 /// Runs use the libraries that the plan has loaded, even if their files change.
 /// A file that is written slowly changes more than once: it is reported once.
-void say_changes(const StudyPlan& plan, const StudyOptions& options, std::set<fs::path>& said) {
+void report_changes(const StudyPlan& plan, const StudyOptions& options,
+                    std::set<fs::path>& reported) {
   for (const std::shared_ptr<host::Registry>& registry : plan.registries) {
     for (const fs::path& file : registry->changed()) {
-      if (said.insert(file).second) {
+      if (reported.insert(file).second) {
         options.say(file.string() +
                     " has changed since the study began: this call continues with the old library; "
                     "repeat the command to run with the new one");
@@ -271,7 +272,7 @@ StudyEnd run_study(const StudyPlan& plan, const StudyOptions& options) {
     store.add(rows);
     progress.done += rows.size();
     progress.elapsed_s = since(start);
-    say_changes(plan, options, changed);
+    report_changes(plan, options, changed);
     options.progress(progress);
   };
   const WorkerPool::Finish finish = pool.run(left, study.work(), keep);
@@ -301,7 +302,7 @@ StudyEstimate estimate_study(const StudyPlan& plan, const StudyOptions& options)
   if (keys.empty() && !left.empty()) {
     std::map<std::size_t, std::size_t> first;  // of each pipeline
     for (const std::size_t i : left) {
-      if (!plan.runs[i].key.empty() && first.size() < kMostProbes) {
+      if (!plan.runs[i].key.empty() && first.size() < kMaxProbes) {
         first.emplace(plan.runs[i].pipeline, i);
       }
     }

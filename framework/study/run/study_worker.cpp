@@ -246,10 +246,10 @@ std::string in_utf8(const std::string& text) {
 }
 
 /// The message with the end of the output on stdout and stderr, in one line.
-std::string with_said(const std::string& message, const std::string& said) {
+std::string with_output(const std::string& message, const std::string& output) {
   constexpr std::size_t kAtMost = 300;
   std::string line;
-  for (const char c : said.substr(said.size() - std::min(said.size(), kAtMost))) {
+  for (const char c : output.substr(output.size() - std::min(output.size(), kAtMost))) {
     const bool blank = c >= 0 && c <= ' ';
     if (!blank) {
       line += c;
@@ -264,22 +264,22 @@ std::string with_said(const std::string& message, const std::string& said) {
 }
 
 /// The end of a process that was not ended from outside.
-std::string cause_of(const Ended& ended, std::string& said) {
+std::string cause_of(const Ended& ended, std::string& output) {
   if (ended.how == Ending::killed) {
     return "was killed by " + signal_name(ended.signal);
   }
-  if (const std::size_t line = said.rfind('\n');
+  if (const std::size_t line = output.rfind('\n');
       ended.exit_code == kCrashed && line != std::string::npos) {
-    const std::string cause = said.substr(line + 1);
-    said.resize(line);
+    const std::string cause = output.substr(line + 1);
+    output.resize(line);
     return cause;
   }
   return "ended the process with exit code " + std::to_string(ended.exit_code);
 }
 
 RunOutcome crashed(const Ended& ended) {
-  std::string said = ended.said;
-  RunOutcome run = without_result(Outcome::crashed, ended.note + " " + cause_of(ended, said));
+  std::string output = ended.output;
+  RunOutcome run = without_result(Outcome::crashed, ended.note + " " + cause_of(ended, output));
   const host::Json result = host::Json::parse(ended.crash_report, nullptr, false);
   if (ended.how == Ending::exited && result.is_object() && result.contains("message")) {
     run.outcome = ended.exit_code == kStuck ? Outcome::failed : Outcome::crashed;
@@ -287,7 +287,7 @@ RunOutcome crashed(const Ended& ended) {
     run.result = ended.crash_report;
     run.values = values_of(result);
   }
-  run.message = with_said(run.message, said);
+  run.message = with_output(run.message, output);
   return run;
 }
 
@@ -323,7 +323,7 @@ std::string study_run(const Job& job, const PlannedConfig& planned, const StudyB
 
 namespace {
 
-RunOutcome outcome_as_told(const Ended& ended, const StudyBudget& budget) {
+RunOutcome outcome_as_reported(const Ended& ended, const StudyBudget& budget) {
   const JobLimits limits = job_limits(budget);
   const auto stopped = [&](Outcome outcome, const std::string& why) {
     return without_result(outcome, ended.note + " " + why);
@@ -392,7 +392,7 @@ Appraisal appraisal_of(const Ended& ended, const StudyBudget& budget, const std:
 }
 
 RunOutcome outcome_of(const Ended& ended, const StudyBudget& budget) {
-  RunOutcome run = outcome_as_told(ended, budget);
+  RunOutcome run = outcome_as_reported(ended, budget);
   run.message = in_utf8(run.message);
   return run;
 }

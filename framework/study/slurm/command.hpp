@@ -15,7 +15,4 @@ struct CommandResult {
 
 /// Runs a program from PATH and waits for its end. Throws Error if it cannot be started.
 CommandResult run_command(std::vector<std::string> arguments);
-
-/// True if PATH has a program of that name.
-bool has_command(const std::string& program);
 }  // namespace altiplan::study

@@ -138,10 +138,11 @@ std::vector<double> holm(std::span<const double> p) {
                [](double value) { return !std::isnan(value); });
   const std::vector<std::size_t> order = ascending(numbers);
   std::vector<double> adjusted(numbers.size());
-  double least = 0;
+  double max_so_far = 0;
   for (std::size_t step = 0; step < order.size(); ++step) {
-    least = std::max(least, std::min(1.0, double(order.size() - step) * numbers[order[step]]));
-    adjusted[order[step]] = least;
+    max_so_far =
+        std::max(max_so_far, std::min(1.0, double(order.size() - step) * numbers[order[step]]));
+    adjusted[order[step]] = max_so_far;
   }
   std::vector<double> all(p.begin(), p.end());
   auto next = adjusted.begin();

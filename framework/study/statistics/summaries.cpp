@@ -47,8 +47,8 @@ bool comparable(const std::vector<std::vector<double>>& costs) {
 }
 
 /// The cost as a multiple of the lowest.
-double ratio(double cost, double least) {
-  return cost == least ? 1 : cost / least;  // infinite over zero
+double ratio(double cost, double min_cost) {
+  return cost == min_cost ? 1 : cost / min_cost;  // infinite over zero
 }
 }  // namespace
 
@@ -127,11 +127,11 @@ std::optional<std::vector<std::vector<CurvePoint>>> performance_profile(
   for (const std::vector<double>& row : costs) {
     std::vector<double> ratios;
     for (std::size_t problem = 0; problem < row.size(); ++problem) {
-      double least = row[problem];
+      double min_cost = row[problem];
       for (const std::vector<double>& other : costs) {
-        least = std::fmin(least, other[problem]);  // ignores a NaN
+        min_cost = std::fmin(min_cost, other[problem]);  // ignores a NaN
       }
-      const double multiple = std::isnan(row[problem]) ? kNone : ratio(row[problem], least);
+      const double multiple = std::isnan(row[problem]) ? kNone : ratio(row[problem], min_cost);
       if (std::isfinite(multiple)) {
         ratios.push_back(multiple);
       }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "altiplan/error.hpp"
 #include "host/result/difference.hpp"
@@ -88,7 +87,7 @@ class Merger {
     add_variants(store);
     const std::map<std::int64_t, std::int64_t> sessions = add_sessions(store);
     for (const StoredRun& run : store.runs()) {
-      if (keys_.contains(run.key)) {
+      if (from_.contains(run.key)) {
         compare(*store.run(run.id), file);
       } else {
         expect_free(run, file);
@@ -99,7 +98,7 @@ class Merger {
   }
 
   Merged finish() {
-    merged_.runs = keys_.size();
+    merged_.runs = from_.size();
     return std::move(merged_);
   }
 
@@ -190,7 +189,6 @@ class Merger {
       throw Error("'" + file + "' is damaged: the run " + cell(run) + " belongs to no session");
     }
     run.session = session->second;
-    keys_.insert(run.key);
     from_[run.key] = file;
     batch_.push_back(std::move(run));
     if (batch_.size() == kBatch) {
@@ -207,8 +205,7 @@ class Merger {
 
   Store out_;
   Study study_;
-  std::string first_;  ///< the first store
-  std::set<std::string> keys_;
+  std::string first_;                         ///< the first store
   std::map<std::string, std::string> from_;   ///< the store, by key
   std::map<std::string, std::string> cells_;  ///< key of the run, by pipeline, scenario, repetition
   std::vector<StoredRun> batch_;

@@ -89,10 +89,10 @@ std::string meaning(const std::filesystem::path& file, int code, int error, cons
 }
 }  // namespace
 
-Statement::Statement(sqlite3* database, const std::filesystem::path& file, const char* sql)
+Statement::Statement(sqlite3* database, const std::filesystem::path& file, const std::string& sql)
     : database_(database), file_(file) {
   sqlite3_stmt* statement = nullptr;
-  expect(sqlite3_prepare_v2(database, sql, -1, &statement, nullptr));
+  expect(sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr));
   statement_.reset(statement);
 }
 
@@ -102,43 +102,30 @@ void Statement::expect(int code) const {
   }
 }
 
-Statement& Statement::bind(int index, std::string_view text) {
+void Statement::set(int index, std::string_view text) {
   expect(
       sqlite3_bind_text(statement_.get(), index, text.data(), int(text.size()), SQLITE_TRANSIENT));
-  return *this;
 }
 
-Statement& Statement::bind(int index, std::int64_t value) {
+void Statement::set(int index, std::int64_t value) {
   expect(sqlite3_bind_int64(statement_.get(), index, value));
-  return *this;
 }
 
-Statement& Statement::bind(int index, double value) {
+void Statement::set(int index, double value) {
   expect(std::isnan(value) ? sqlite3_bind_null(statement_.get(), index)
                            : sqlite3_bind_double(statement_.get(), index, value));
-  return *this;
 }
 
-Statement& Statement::bind_blob(int index, std::string_view bytes) {
+void Statement::set(int index, Blob blob) {
+  const auto& [bytes] = blob;
   expect(
       sqlite3_bind_blob64(statement_.get(), index, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
-  return *this;
-}
-
-Statement& Statement::bind_null(int index) {
-  expect(sqlite3_bind_null(statement_.get(), index));
-  return *this;
 }
 
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   expect(code);
   return code == SQLITE_ROW;
-}
-
-void Statement::run() {
-  step();
-  reset();
 }
 
 std::string Statement::text(int column) const { return std::string(blob(column)); }
@@ -205,8 +192,8 @@ void Sqlite::open(int flags) {
   }
 }
 
-void Sqlite::run(const char* sql) const {
-  const int code = sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr);
+void Sqlite::run(const std::string& sql) const {
+  const int code = sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr);
   if (code != SQLITE_OK) {
     fail(file_, code, database_.get());
   }

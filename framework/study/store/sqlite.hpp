@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -12,21 +13,37 @@
 
 namespace altiplan::study {
 
+/// Bytes that are no text.
+struct Blob {
+  std::string_view bytes;
+};
+
 /// A prepared statement. Bind, then step; call `reset` before reuse.
 class Statement {
  public:
-  Statement(sqlite3* database, const std::filesystem::path& file, const char* sql);
+  Statement(sqlite3* database, const std::filesystem::path& file, const std::string& sql);
 
-  Statement& bind(int index, std::string_view text);
-  Statement& bind(int index, std::int64_t value);
-  Statement& bind(int index, double value);  ///< NaN becomes NULL
-  Statement& bind_blob(int index, std::string_view bytes);
-  Statement& bind_null(int index);
+  /// Sets the parameters from the first on, each to a text, a number or a Blob.
+  template <class... Values>
+  Statement& bind(const Values&... values) {
+    int index = 0;
+    (set(++index, values), ...);
+    return *this;
+  }
+  void set(int index, std::string_view text);
+  void set(int index, std::int64_t value);
+  void set(int index, std::integral auto value) { set(index, std::int64_t(value)); }
+  void set(int index, double value);  ///< NaN becomes NULL
+  void set(int index, Blob blob);
 
   /// True if there is a row. Throws Error naming the file.
   bool step();
-  /// Executes a statement without rows and resets it.
-  void run();
+  /// Executes a statement without rows, with these parameters if there are any, and resets it.
+  template <class... Values>
+  void run(const Values&... values) {
+    bind(values...).step();
+    reset();
+  }
   void reset() { sqlite3_reset(statement_.get()); }
 
   std::string text(int column) const;
@@ -55,9 +72,9 @@ class Sqlite {
   /// `flags` as for sqlite3_open_v2. The name is always a file, even if it looks like `:memory:`.
   Sqlite(const std::filesystem::path& file, int flags);
 
-  Statement prepare(const char* sql) const { return {database_.get(), file_, sql}; }
+  Statement prepare(const std::string& sql) const { return {database_.get(), file_, sql}; }
   /// One or several statements without rows.
-  void run(const char* sql) const;
+  void run(const std::string& sql) const;
   const std::filesystem::path& file() const { return file_; }
 
  private:

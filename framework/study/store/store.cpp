@@ -9,6 +9,10 @@ namespace {
 
 /// Fast compression, so that runs do not wait; JSON still shrinks to a fifth.
 constexpr int kLevel = 1;
+
+std::string packed(const std::string& text) {
+  return text.empty() ? "" : host::compressed(text, kLevel);
+}
 }  // namespace
 
 Store::Store(const std::filesystem::path& file, StoreMode mode)
@@ -29,7 +33,7 @@ void Store::set_study(const std::map<std::string, std::string>& study) {
   Transaction transaction(database_->sqlite);
   Statement insert = database_->sqlite.prepare("INSERT OR REPLACE INTO study VALUES(?, ?)");
   for (const auto& [name, value] : study) {
-    insert.bind(1, name).bind(2, value).run();
+    insert.run(name, value);
   }
   transaction.commit();
 }
@@ -51,11 +55,11 @@ std::int64_t Store::add_session(const StoredSession& session) {
   Statement insert = database_->sqlite.prepare(
       "INSERT INTO sessions(started, command, version, host, system, cpu, cores, memory_mb, jobs, "
       "reuse, limits) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id");
-  insert.bind(1, session.started).bind(2, session.command).bind(3, session.version);
-  insert.bind(4, session.host).bind(5, session.system).bind(6, session.cpu);
-  insert.bind(7, std::int64_t(session.cores)).bind(8, session.memory_mb);
-  insert.bind(9, std::int64_t(session.jobs)).bind(10, std::int64_t(session.reuse));
-  insert.bind(11, session.limits).step();
+  insert
+      .bind(session.started, session.command, session.version, session.host, session.system,
+            session.cpu, session.cores, session.memory_mb, session.jobs, session.reuse,
+            session.limits)
+      .step();
   const std::int64_t id = insert.integer(0);
   insert.reset();
   transaction.commit();
@@ -88,21 +92,19 @@ void Store::add(const std::vector<StoredRun>& runs) {
   Statement value = sqlite.prepare(
       "INSERT INTO run_values VALUES(?, (SELECT id FROM quantities WHERE name = ?), ?)");
   for (const StoredRun& run : runs) {
-    insert.bind(1, run.key).bind(2, run.scenario).bind(3, run.pipeline);
-    insert.bind(4, std::int64_t(run.repetition)).bind(5, run.seed).bind(6, run.outcome);
-    insert.bind(7, run.message).bind(8, run.wall_time_s).bind(9, run.cpu_time_s);
-    insert.bind(10, run.peak_memory_mb).bind(11, std::int64_t(run.place)).bind(12, run.session);
+    insert.bind(run.key, run.scenario, run.pipeline, run.repetition, run.seed, run.outcome,
+                run.message, run.wall_time_s, run.cpu_time_s, run.peak_memory_mb, run.place,
+                run.session);
     const bool is_new = insert.step();
     const std::int64_t id = is_new ? insert.integer(0) : 0;
     insert.reset();
     if (!is_new) {
       continue;
     }
-    result.bind(1, id).bind_blob(2, run.result.empty() ? "" : host::compressed(run.result, kLevel));
-    result.bind_blob(3, run.trace.empty() ? "" : host::compressed(run.trace, kLevel)).run();
+    result.run(id, Blob{packed(run.result)}, Blob{packed(run.trace)});
     for (const auto& [name, number] : run.values) {
-      quantity.bind(1, name).run();
-      value.bind(1, id).bind(2, name).bind(3, number).run();
+      quantity.run(name);
+      value.run(id, name, number);
     }
   }
   transaction.commit();
@@ -137,20 +139,20 @@ std::vector<StoredRun> Store::runs() const {
 
 std::optional<StoredRun> Store::run(std::int64_t id) const {
   Statement row = database_->outlines("WHERE runs.id = ?");
-  row.bind(1, id);
+  row.bind(id);
   return database_->whole_run(row);
 }
 
 std::optional<StoredRun> Store::run(std::string_view key) const {
   Statement row = database_->outlines("WHERE key = ?");
-  row.bind(1, key);
+  row.bind(key);
   return database_->whole_run(row);
 }
 
 std::string Store::trace(std::int64_t id) const {
   // Most stores have none: the length shows that without unpacking a result.
   Statement row = database_->sqlite.prepare("SELECT length(trace) FROM results WHERE run = ?");
-  row.bind(1, id);
+  row.bind(id);
   const auto whole = row.step() && row.integer(0) > 0 ? run(id) : std::nullopt;
   return whole ? whole->trace : "";
 }
@@ -159,7 +161,7 @@ void Store::remove(const std::vector<std::string>& keys) {
   Transaction transaction(database_->sqlite);
   Statement statement = database_->sqlite.prepare("DELETE FROM runs WHERE key = ?");
   for (const std::string& key : keys) {
-    statement.bind(1, key).run();
+    statement.run(key);
   }
   transaction.commit();
 }

@@ -175,8 +175,8 @@ void StoreDatabase::expect_tables() const {
 
 void StoreDatabase::create() const {
   Transaction transaction(sqlite);
-  sqlite.run(("PRAGMA application_id = " + std::to_string(kApplicationId)).c_str());
-  sqlite.run(("PRAGMA user_version = " + std::to_string(kVersion)).c_str());
+  sqlite.run("PRAGMA application_id = " + std::to_string(kApplicationId));
+  sqlite.run("PRAGMA user_version = " + std::to_string(kVersion));
   sqlite.run(kSchema);
   transaction.commit();
 }
@@ -184,20 +184,18 @@ void StoreDatabase::create() const {
 void StoreDatabase::add_variants(const char* table,
                                  const std::vector<StoredVariant>& variants) const {
   Statement insert = sqlite.prepare(
-      (std::string("INSERT INTO ") + table +
-       "(name, of, file, overrides) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE SET "
-       "of = excluded.of, file = excluded.file, overrides = excluded.overrides")
-          .c_str());
+      std::string("INSERT INTO ") + table +
+      "(name, of, file, overrides) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE SET "
+      "of = excluded.of, file = excluded.file, overrides = excluded.overrides");
   for (const StoredVariant& variant : variants) {
-    insert.bind(1, variant.name).bind(2, variant.of).bind(3, variant.file);
-    insert.bind(4, std::string_view(Json(variant.set).dump())).run();
+    insert.run(variant.name, variant.of, variant.file, Json(variant.set).dump());
   }
 }
 
 std::vector<StoredVariant> StoreDatabase::variants(const char* table) const {
   std::vector<StoredVariant> all;
-  Statement rows = sqlite.prepare(
-      (std::string("SELECT name, of, file, overrides FROM ") + table + " ORDER BY id").c_str());
+  Statement rows = sqlite.prepare(std::string("SELECT name, of, file, overrides FROM ") + table +
+                                  " ORDER BY id");
   while (rows.step()) {
     StoredVariant variant{rows.text(0), rows.text(1), rows.text(2), {}};
     try {
@@ -212,7 +210,7 @@ std::vector<StoredVariant> StoreDatabase::variants(const char* table) const {
 }
 
 void StoreDatabase::read_values(StoredRun& run, Statement& values) const {
-  values.bind(1, run.id);
+  values.bind(run.id);
   while (values.step()) {
     if (values.is_null(0)) {
       fail_damaged("a value of the run " + run.key + " has no name");
@@ -229,7 +227,7 @@ Statement StoreDatabase::values_of_run() const {
 }
 
 Statement StoreDatabase::outlines(const std::string& rest) const {
-  return sqlite.prepare((kRun + rest).c_str());
+  return sqlite.prepare(kRun + rest);
 }
 
 StoredRun StoreDatabase::outline(const Statement& row) const {
@@ -269,7 +267,7 @@ std::optional<StoredRun> StoreDatabase::whole_run(Statement& row) const {
   Statement values = values_of_run();
   read_values(run, values);
   Statement result = sqlite.prepare("SELECT result, trace FROM results WHERE run = ?");
-  result.bind(1, run.id);
+  result.bind(run.id);
   if (result.step()) {
     run.result = unpacked(run, "result", result.blob(0));
     run.trace = unpacked(run, "trace", result.blob(1));

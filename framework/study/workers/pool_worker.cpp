@@ -19,16 +19,16 @@
 namespace altiplan::study {
 namespace {
 
-constexpr off_t kSaid = 2048;           ///< bytes of stdout and stderr that are reported
-constexpr off_t kSaidAtMost = 1 << 20;  ///< … that are kept
+constexpr off_t kSaid = 2048;          ///< bytes of stdout and stderr that are reported
+constexpr off_t kMaxOutput = 1 << 20;  ///< … that are kept
 constexpr std::size_t kMaxCrashReport = 256 << 20;
 }  // namespace
 
 PoolWorker::PoolWorker() {
   void* shared = ::mmap(nullptr, sizeof(WorkerStatus), PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  said_ = ::memfd_create("altiplan worker", MFD_CLOEXEC);
-  if (shared == MAP_FAILED || said_ < 0 || ::fcntl(said_, F_SETFL, O_APPEND) != 0) {
+  output_ = ::memfd_create("altiplan worker", MFD_CLOEXEC);
+  if (shared == MAP_FAILED || output_ < 0 || ::fcntl(output_, F_SETFL, O_APPEND) != 0) {
     throw Error(std::string("cannot create the memory file of a worker: ") + std::strerror(errno));
   }
   board_ = new (shared) WorkerStatus;
@@ -36,7 +36,7 @@ PoolWorker::PoolWorker() {
 
 PoolWorker::~PoolWorker() {
   ::munmap(board_, sizeof(WorkerStatus));
-  ::close(said_);
+  ::close(output_);
 }
 
 bool PoolWorker::start(const WorkFolder& folder, std::size_t serial, WorkerTask task,
@@ -45,14 +45,14 @@ bool PoolWorker::start(const WorkFolder& folder, std::size_t serial, WorkerTask 
   task_.records = folder.file(serial, "records");
   task_.crash_report = folder.file(serial, "last");
   task_.scratch = folder.file(serial, "scratch");
-  task_.said = said_;
+  task_.output = output_;
   task_.parent = ::getpid();
   task_.mark = folder.processes(0, serial).mark;
   new (board_) WorkerStatus;
   for (const std::string& file : {task_.records, task_.crash_report, task_.scratch}) {
     ::unlink(file.c_str());  // whatever another process has put there
   }
-  if (::ftruncate(said_, 0) != 0) {
+  if (::ftruncate(output_, 0) != 0) {
     return false;
   }
   process_ = ::fork();
@@ -79,10 +79,10 @@ void PoolWorker::look_at_job() {
 
 std::optional<Ending> PoolWorker::watch(const JobLimits& limits) {
   struct stat status {};
-  if (::fstat(said_, &status) == 0 && status.st_size > kSaidAtMost) {
-    const std::string last = said();
+  if (::fstat(output_, &status) == 0 && status.st_size > kMaxOutput) {
+    const std::string last = output();
     [[maybe_unused]] const bool kept =
-        ::ftruncate(said_, 0) == 0 && ::write(said_, last.data(), last.size()) > 0;
+        ::ftruncate(output_, 0) == 0 && ::write(output_, last.data(), last.size()) > 0;
   }
   look_at_job();
   if (seen_ == 0) {
@@ -145,11 +145,12 @@ std::string PoolWorker::note() const {
   return {board_->note.begin(), std::find(board_->note.begin(), board_->note.end() - 1, '\0')};
 }
 
-std::string PoolWorker::said() const {
+std::string PoolWorker::output() const {
   struct stat status {};
-  ::fstat(said_, &status);
+  ::fstat(output_, &status);
   std::string text(std::size_t(std::min(kSaid, status.st_size)), '\0');
-  const ssize_t got = ::pread(said_, text.data(), text.size(), status.st_size - off_t(text.size()));
+  const ssize_t got =
+      ::pread(output_, text.data(), text.size(), status.st_size - off_t(text.size()));
   text.resize(std::size_t(std::max<ssize_t>(got, 0)));
   return text;
 }
@@ -170,7 +171,7 @@ std::optional<Ended> PoolWorker::unfinished(Ending how) {
     ended.crash_report = read(task_.crash_report, 0, kMaxCrashReport);
   }
   ended.note = note();
-  ended.said = said();
+  ended.output = output();
   ended.wall_s = std::max(0.0, double(steady_ns() - board_->began_ns) * 1e-9);
   ended.cpu_s = std::max(cpu_s_, reaped_cpu_s_ - board_->base_cpu_s);
   ended.peak_memory_mb = peak_mb_;

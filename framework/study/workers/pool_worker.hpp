@@ -55,12 +55,12 @@ class PoolWorker {
   void add_cpu(double seconds) { reaped_cpu_s_ += seconds; }
 
  private:
-  std::string said() const;
+  std::string output() const;
   void look_at_job();
   std::string read(const std::string& file, std::size_t offset, std::size_t at_most);
 
   WorkerStatus* board_ = nullptr;  ///< shared with the process
-  int said_ = -1;                  ///< memory file with its stdout and stderr
+  int output_ = -1;                ///< memory file with its stdout and stderr
   pid_t process_ = -1;
   WorkerTask task_;
   ProcessTree tree_;

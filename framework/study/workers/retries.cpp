@@ -62,7 +62,7 @@ void Retries::fault(const std::string& what) {
   paused_until_s_ = steady_s() + std::ldexp(kFirstPauseS, faults_in_a_row_);
   if (++faults_in_a_row_ >= kFaultsInARow) {
     give_up(what);
-  } else if (options_.say && std::exchange(said_, what) != what) {
+  } else if (options_.say && std::exchange(reported_, what) != what) {
     options_.say(what + "; trying again");
   }
 }

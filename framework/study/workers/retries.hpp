@@ -35,7 +35,7 @@ class Retries {
   std::map<std::size_t, std::string> causes_;  ///< of doubtful ends
   int faults_in_a_row_ = 0;
   double paused_until_s_ = 0;
-  std::string said_;
+  std::string reported_;
   std::string failure_;
 };
 }  // namespace altiplan::study

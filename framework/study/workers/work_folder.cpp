@@ -43,10 +43,10 @@ Holder holder(int lock) {
   std::array<char, 300> text{};
   Holder holder;
   if (::pread(lock, text.data(), text.size() - 1, 0) > 0) {
-    const std::string said = text.data();
-    holder.process = std::atoi(said.c_str());
-    if (const std::size_t at = said.find(" on "); at != said.npos) {
-      holder.host = said.substr(at + 4);
+    const std::string written = text.data();
+    holder.process = std::atoi(written.c_str());
+    if (const std::size_t at = written.find(" on "); at != written.npos) {
+      holder.host = written.substr(at + 4);
     }
   }
   return holder;

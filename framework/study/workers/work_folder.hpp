@@ -36,11 +36,11 @@ struct Ended {
   Ending how = Ending::done;
   std::string payload;  ///< what the work returned
   std::string
-      crash_report;   ///< if it did not return: content of the file Job::crash_report, if written
-  std::string note;   ///< …: the step or plugin at work (Job::note)
-  std::string said;   ///< …: the last 2 kB of stdout and stderr
-  int exit_code = 0;  ///< of `exited`
-  int signal = 0;     ///< of `killed`
+      crash_report;    ///< if it did not return: content of the file Job::crash_report, if written
+  std::string note;    ///< …: the step or plugin at work (Job::note)
+  std::string output;  ///< …: the last 2 kB of stdout and stderr
+  int exit_code = 0;   ///< of `exited`
+  int signal = 0;      ///< of `killed`
   double wall_s = 0;
   double cpu_s = 0;           ///< of all its processes
   double peak_memory_mb = 0;  ///< of all its processes, without the parent's memory at the fork

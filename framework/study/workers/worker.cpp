@@ -49,8 +49,8 @@ void stand_alone(const WorkerTask& task) {
   }
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
-  ::dup2(task.said, STDOUT_FILENO);
-  ::dup2(task.said, STDERR_FILENO);
+  ::dup2(task.output, STDOUT_FILENO);
+  ::dup2(task.output, STDERR_FILENO);
   ::close_range(3, ~0U, 0);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, rlim_t(task.limits.file_mb * double(1 << 20)));

@@ -39,7 +39,7 @@ struct WorkerTask {
   std::string scratch;
   std::string group;  ///< file to enter its control group, if it has one
   std::uint64_t mark = 0;
-  int said = -1;  ///< descriptor for stdout and stderr
+  int output = -1;  ///< descriptor for stdout and stderr
   JobLimits limits;
   pid_t parent = 0;
 };

@@ -16,7 +16,7 @@ struct FieldsAsJson {
 
   void extensions() {}
   template <class T>
-  void operator()(const char* name, const T& value) {
+  void operator()(std::string_view name, const T& value) {
     text += (text.empty() ? "\"" : ",\"") + std::string(name) + "\":" + json(value);
   }
 

@@ -219,61 +219,49 @@ std::string regex_problem(const std::string& text) {
 }  // namespace
 
 void add_check_plugin(App& app, Action& action) {
-  App* command =
-      app.add_subcommand("check-plugin",
-                         "check a plugin against the contract of its interface, each test "
-                         "in its own process");
-  auto arguments = std::make_shared<Arguments>();
+  auto [command, arguments] =
+      add_command<Arguments>(app, action, "check-plugin",
+                             "check a plugin against the contract of its interface, each test "
+                             "in its own process",
+                             check_plugin);
   command
-      ->add_option("library", arguments->library,
-                   "plugin library (.so), or plugins in Python (.py)")
-      ->required()
-      ->type_name("LIB");
+      .add_option("library LIB", arguments.library,
+                  "plugin library (.so), or plugins in Python (.py)")
+      ->required();
   command
-      ->add_option("--only", arguments->only,
-                   "run only tests whose name matches this regular expression")
-      ->type_name("RE")
+      .add_option("--only RE", arguments.only,
+                  "run only tests whose name matches this regular expression")
       ->check(regex_problem);
-  command->add_option("--seed", arguments->overrides.seed, "random seed of the tests (default 1)")
-      ->type_name("N")
+  command.add_option("--seed N", arguments.overrides.seed, "random seed of the tests (default 1)")
       ->check(seed_problem);
   command
-      ->add_option("--rounds", arguments->rounds,
-                   "number of random worlds, routes or samples per test")
-      ->type_name("N")
+      .add_option("--rounds N", arguments.rounds,
+                  "number of random worlds, routes or samples per test")
       ->check(Check::between(1, 1'000'000))
       ->capture_default_str();
+  command.add_option("--sets FILE", arguments.sets,
+                     "parameter sets to check the plugin with, see docs/reference/conformance.md "
+                     "(default: the plugin's defaults)");
+  add_plugin_path(command, arguments.overrides);
   command
-      ->add_option("--sets", arguments->sets,
-                   "parameter sets to check the plugin with, see docs/reference/conformance.md "
-                   "(default: the plugin's defaults)")
-      ->type_name("FILE");
-  add_plugin_path(*command, arguments->overrides);
-  command
-      ->add_option("--jobs", arguments->jobs,
-                   "number of parallel tests (default: number of processors)")
-      ->type_name("N")
+      .add_option("--jobs N", arguments.jobs,
+                  "number of parallel tests (default: number of processors)")
       ->check(Check::between(1, 1024));
-  command->add_option("--time-limit", arguments->time_limit_s, "time limit of a test (s)")
-      ->type_name("S")
+  command.add_option("--time-limit S", arguments.time_limit_s, "time limit of a test (s)")
       ->check(number_from(0.01, 86400))
       ->capture_default_str();
-  command->add_option("--memory-limit", arguments->memory_limit_mb, "memory limit of a test (MB)")
-      ->type_name("MB")
+  command.add_option("--memory-limit MB", arguments.memory_limit_mb, "memory limit of a test (MB)")
       ->check(number_from(1, 1e9))
       ->capture_default_str();
-  command->add_flag("--untimed", arguments->untimed, "skip the tests that measure time");
-  command->add_flag("--list", arguments->list, "print the test names without running any");
+  command.add_flag("--untimed", arguments.untimed, "skip the tests that measure time");
+  command.add_flag("--list", arguments.list, "print the test names without running any");
   Option* here =
-      command->add_flag("--here", arguments->here,
-                        "run the single test selected by --only in this process, for a debugger");
-  command->add_flag("--json", arguments->json, "print as JSON")->excludes(here);
-  command->add_option("--junit", arguments->junit, "also write the verdicts as JUnit XML")
-      ->type_name("FILE")
+      command.add_flag("--here", arguments.here,
+                       "run the single test selected by --only in this process, for a debugger");
+  command.add_flag("--json", arguments.json, "print as JSON")->excludes(here);
+  command.add_option("--junit FILE", arguments.junit, "also write the verdicts as JUnit XML")
       ->excludes(here);
-  command->add_option("--answer", arguments->answer)->hide();  // internal, from the parent
-  set_example(*command, "altiplan check-plugin build/libaltiplan_planner_my_planner.so");
-  command->callback(
-      [&action, arguments] { action = [arguments] { return check_plugin(*arguments); }; });
+  command.add_option("--answer", arguments.answer)->hide();  // internal, from the parent
+  set_example(command, "altiplan check-plugin build/libaltiplan_planner_my_planner.so");
 }
 }  // namespace altiplan::cli

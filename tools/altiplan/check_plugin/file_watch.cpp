@@ -133,9 +133,9 @@ FileWatch::FileWatch(fs::path scratch) : scratch_(fs::canonical(scratch)) {
   std::promise<int> listener;
   // The thread starts before the filter is installed, which therefore does not apply to it.
   std::thread([this, of = listener.get_future()]() mutable { serve(of.get()); }).detach();
-  const int made = install_filter();
-  works_ = made >= 0;
-  listener.set_value(made);
+  const int filter = install_filter();
+  works_ = filter >= 0;
+  listener.set_value(filter);
 }
 
 void FileWatch::serve(int listener) {

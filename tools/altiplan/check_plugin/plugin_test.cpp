@@ -94,10 +94,10 @@ class PluginUnderTest {
   /// they fit.
   std::string misfit() const {
     try {
-      const conformance::Setup made = setup();
-      std::vector<Problem> problems = load().describe(made.with, "").problems;
-      if (problems.empty() && made.tighter != nullptr) {
-        problems = load().describe(made.tighter, "").problems;
+      const conformance::Setup given = setup();
+      std::vector<Problem> problems = load().describe(given.with, "").problems;
+      if (problems.empty() && given.tighter != nullptr) {
+        problems = load().describe(given.tighter, "").problems;
       }
       const char* const hint = what_->sets.empty() ? " (set parameters with --sets FILE)" : "";
       return problems.empty() ? "" : problems.front().text() + hint;

@@ -128,19 +128,19 @@ Outcome memory_is_given_back(const LoadPlugin& load, const MakeSetup& make_setup
   constexpr std::size_t kMax = 4096;
   const conformance::Setup setup = make_setup();
   const PluginEntry& entry = load();
-  std::size_t least = ~std::size_t(0);
+  std::size_t min_growth = ~std::size_t(0);
   std::size_t before = 0;
   for (int round = 0; round < kRounds; ++round) {
     (void)answers_of(entry, setup);
     const std::size_t now = memory_in_use();
     if (round >= kRounds / 2) {
-      least = std::min(least, now > before ? now - before : 0);
+      min_growth = std::min(min_growth, now > before ? now - before : 0);
     }
     before = now;
   }
-  if (least > kMax) {
-    return {{{kMemory,
-              "each repetition of the same work takes " + std::to_string(least) + " more bytes"}},
+  if (min_growth > kMax) {
+    return {{{kMemory, "each repetition of the same work takes " + std::to_string(min_growth) +
+                           " more bytes"}},
             "",
             false,
             ""};

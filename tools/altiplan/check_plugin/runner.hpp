@@ -16,7 +16,7 @@ struct Verdict {
   bool seen_from_outside = false;  ///< a finding by the parent about the process that ran the test
   std::string skipped;
   bool misfit = false;  ///< skipped because the parameters do not fit the plugin
-  std::string said;     ///< the end of its output on stdout and stderr
+  std::string output;   ///< the end of its output on stdout and stderr
   double time_s = 0;
   double peak_memory_mb = 0;
 

@@ -15,10 +15,10 @@ std::shared_ptr<const World> world_of(const std::vector<Value>& layers, host::Re
     Site site;
     site.before = &world;
     site.frame = world.frame();
-    const std::shared_ptr<const Environment> made =
+    const std::shared_ptr<const Environment> environment =
         registry.get("environment", plugin).environment(&layer.entries[0].value, site);
-    world = world.with({plugin, plugin, made, true});
-    if (const auto& frame = made->info().frame) {
+    world = world.with({plugin, plugin, environment, true});
+    if (const auto& frame = environment->info().frame) {
       world = world.with_frame(*frame);
     }
   }

@@ -30,12 +30,12 @@ constexpr rlim_t kMaxOutput = 64 << 20;
 
 /// The last bytes of a file, at most that many; "" if it is not a regular file, since a test may
 /// have replaced it by anything.
-std::string end_of(const fs::path& file, std::size_t most) {
+std::string end_of(const fs::path& file, std::size_t max_bytes) {
   const int from = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
   struct stat status {};
   std::string text;
   if (from >= 0 && ::fstat(from, &status) == 0 && S_ISREG(status.st_mode)) {
-    text.resize(std::min(most, std::size_t(status.st_size)));
+    text.resize(std::min(max_bytes, std::size_t(status.st_size)));
     const ssize_t got =
         ::pread(from, text.data(), text.size(), status.st_size - off_t(text.size()));
     text.resize(std::size_t(std::max(ssize_t(0), got)));
@@ -150,7 +150,7 @@ std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
   Verdict verdict;
   verdict.findings = {{kEnds, "it " + over}};
   verdict.seen_from_outside = true;
-  verdict.said = end_of(scratch_.path() / "said", 2000);
+  verdict.output = end_of(scratch_.path() / "said", 2000);
   verdict.time_s = time_s;
   verdict.peak_memory_mb = peak_mb_;
   return verdict;
@@ -162,13 +162,14 @@ void TestProcess::become(char* const* arguments) const {
   study::set_mark(mark_);
   const rlimit output{kMaxOutput, kMaxOutput};
   ::setrlimit(RLIMIT_FSIZE, &output);
-  const int said = ::open((scratch_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  const int output_file =
+      ::open((scratch_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
   ::close(nothing);
-  ::dup2(said, STDOUT_FILENO);
-  ::dup2(said, STDERR_FILENO);
-  ::close(said);
+  ::dup2(output_file, STDOUT_FILENO);
+  ::dup2(output_file, STDERR_FILENO);
+  ::close(output_file);
   ::setenv("TMPDIR", (scratch_.path() / "tmp").c_str(), 1);
   ::setenv("HOME", (scratch_.path() / "home").c_str(), 1);
   if (again_) {
@@ -196,7 +197,7 @@ void TestProcess::end() {
 
 Verdict TestProcess::verdict_of(int status) {
   Verdict verdict;
-  verdict.said = end_of(scratch_.path() / "said", 2000);
+  verdict.output = end_of(scratch_.path() / "said", 2000);
   const auto fault = [&](const std::string& what) {
     verdict.findings.push_back({kEnds, "the process " + what});
     verdict.seen_from_outside = true;

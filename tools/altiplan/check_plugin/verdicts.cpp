@@ -37,15 +37,15 @@ std::string indented(const std::string& text, std::size_t by) {
 }
 
 /// A plugin's output made printable: it may contain any bytes.
-std::string text_of(const std::string& said) { return host::printable(said, true); }
+std::string text_of(const std::string& output) { return host::printable(output, true); }
 
 std::string findings_text(const CheckedLibrary& library, const Verdict& verdict) {
   std::string all;
   for (const conformance::Finding& finding : verdict.findings) {
     all += "  " + text_of(finding.contract) + "\n" + indented(text_of(finding.message), 4);
   }
-  if (!verdict.said.empty()) {
-    all += "  output:\n" + indented(text_of(verdict.said), 4);
+  if (!verdict.output.empty()) {
+    all += "  output:\n" + indented(text_of(verdict.output), 4);
   }
   return all + "  to reproduce: " + reproduce(library, verdict) + "\n";
 }
@@ -98,7 +98,7 @@ nlohmann::ordered_json verdicts_json(const CheckedLibrary& library,
                      {"findings", findings},
                      {"skipped", verdict.skipped.empty() ? nlohmann::ordered_json()
                                                          : nlohmann::ordered_json(verdict.skipped)},
-                     {"said", verdict.said},
+                     {"said", verdict.output},
                      {"again", reproduce(library, verdict)},
                      {"time_s", verdict.time_s},
                      {"peak_memory_mb", verdict.peak_memory_mb}});

@@ -84,8 +84,8 @@ struct Threads {
   double two_plans_ms = kInfinity;
 
   void add(const Colony& colony, Request request) {
-    const auto keep = [](double& least, const Time& time) {
-      least = std::min(least, time.wall_ms);
+    const auto keep = [](double& minimum, const Time& time) {
+      minimum = std::min(minimum, time.wall_ms);
     };
     keep(one_ms, colony.all(request).time);
     keep(one_single_ms, colony.single(request).time);
@@ -106,16 +106,16 @@ Json time_threads(host::Registry& registry, const Arguments& arguments,
   Json rows = Json::array();
   for (const Setting& setting : settings) {
     const Colony colony(registry, setting);
-    Threads least;
+    Threads minimum;
     for (int pass = 0; pass < 3 * arguments.passes; ++pass) {
-      least.add(colony, request);
+      minimum.add(colony, request);
     }
     rows.push_back({{"planner", setting.planner},
-                    {"one_ms", least.one_ms},
-                    {"two_ms", least.two_ms},
-                    {"efficiency", least.efficiency_of_iterations()},
-                    {"of_a_plan", least.efficiency()},
-                    {"two_plans", least.one_ms / least.two_plans_ms}});
+                    {"one_ms", minimum.one_ms},
+                    {"two_ms", minimum.two_ms},
+                    {"efficiency", minimum.efficiency_of_iterations()},
+                    {"of_a_plan", minimum.efficiency()},
+                    {"two_plans", minimum.one_ms / minimum.two_plans_ms}});
   }
   return rows;
 }

@@ -94,10 +94,10 @@ std::optional<Way> Ways::next() {
   return std::nullopt;
 }
 
-std::vector<Way> spread(std::vector<Way> ways, double least, std::size_t count) {
+std::vector<Way> spread(std::vector<Way> ways, double min_cells, std::size_t count) {
   std::vector<std::size_t> order;
   for (std::size_t n = 0; n < ways.size(); ++n) {
-    if (straight(ways[n]) >= least) {
+    if (straight(ways[n]) >= min_cells) {
       order.push_back(n);
     }
   }

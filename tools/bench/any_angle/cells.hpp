@@ -67,5 +67,5 @@ class Ways {
 
 /// `count` of the queries at least `least` cells long, evenly from the shortest to the longest, in
 /// the given order.
-std::vector<Way> spread(std::vector<Way> ways, double least, std::size_t count);
+std::vector<Way> spread(std::vector<Way> ways, double min_cells, std::size_t count);
 }  // namespace altiplan::bench

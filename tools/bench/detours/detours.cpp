@@ -31,16 +31,16 @@ Json make(const Arguments& arguments) {
   host::write_file(map_file, voxel_map_text(map));
   host::write_file(scenarios, voxel_scenarios_text(map_file.filename().string(), queries));
   double sum = 0;
-  double least = kInfinity;
+  double min_detour = kInfinity;
   for (const DetourQuery& query : queries) {
     sum += std::log(query.length / query.straight);
-    least = std::min(least, query.length / query.straight);
+    min_detour = std::min(min_detour, query.length / query.straight);
   }
   return {{"map", map_file.string()},
           {"scenarios", scenarios.string()},
           {"blocked", double(map.blocked_count()) / double(map.spec().cell_count())},
           {"detour", std::exp(sum / double(queries.size()))},
-          {"least_detour", least}};
+          {"least_detour", min_detour}};
 }
 }  // namespace
 

@@ -22,12 +22,12 @@ const Threats kTable1{{25592, 35739, 1013}, {7665, 17002, 4399},  {7694, 52501, 
                       {19889, 13092, 8925}, {17900, 25944, 6700}, {30996, 9401, 5197},
                       {7093, 32608, 1376},  {38581, 7291, 4932},  {12690, 31697, 4901}};
 
-Threats drawn(std::size_t count, double side, double least, double most) {
+Threats random_threats(std::size_t count, double side, double min_radius, double max_radius) {
   RandomStream random = RandomStream(1).sub("field");
   Threats threats;
   for (std::size_t i = 0; i < count; ++i) {
     threats.push_back(
-        {random.uniform(0, side), random.uniform(0, side), random.uniform(least, most)});
+        {random.uniform(0, side), random.uniform(0, side), random.uniform(min_radius, max_radius)});
   }
   return threats;
 }
@@ -109,7 +109,7 @@ Json time_rows(host::Registry& registry, const std::string& variant, int passes)
       chosen(registry, "local_planner", "velocity_field {variant: " + variant + "}");
   const auto planner = field.entry.local_planner(&field.parameters);
   const std::vector<Row> rows{{"table 1", kTable1, 50e3},
-                              {"random", drawn(80, 90e3, 1000, 5000), 90e3},
+                              {"random", random_threats(80, 90e3, 1000, 5000), 90e3},
                               {"crowd", crowd(), 86e3}};
   std::vector<Request> requests;
   for (const Row& row : rows) {

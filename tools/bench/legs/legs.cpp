@@ -36,7 +36,7 @@ Json measure(const std::string& scenario, const std::string& file, double radius
   const host::Mission mission = host::build_mission(config, 1);
   const World& world = mission.truth;
   const std::vector<Leg> legs = read_legs(file);
-  double least_s = kInfinity;
+  double min_s = kInfinity;
   std::size_t blocked = 0;
   for (int pass = 0; pass < passes; ++pass) {
     blocked = 0;
@@ -46,12 +46,12 @@ Json measure(const std::string& scenario, const std::string& file, double radius
       const Vec3 b(leg[3], leg[4], leg[5]);
       blocked += world.blocked(a, b, radius_m) ? 1 : 0;
     }
-    least_s = std::min(least_s, thread_s() - begin);
+    min_s = std::min(min_s, thread_s() - begin);
   }
   Json figures;
   figures["worlds"].push_back({{"legs", legs.size()},
                                {"blocked", blocked},
-                               {"ns_per_leg", 1e9 * least_s / double(legs.size())}});
+                               {"ns_per_leg", 1e9 * min_s / double(legs.size())}});
   return figures;
 }
 }  // namespace

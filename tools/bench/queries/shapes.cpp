@@ -68,19 +68,19 @@ struct City {
 };
 
 double min_clearance(const City& city, const Vec3& p) {
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (const Shape& shape : city.shapes) {
-    least = std::min(least, signed_distance(shape, p));
+    min_distance = std::min(min_distance, signed_distance(shape, p));
   }
-  return least;
+  return min_distance;
 }
 
 double min_distance(const City& city, const Leg& leg) {
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (const Shape& shape : city.shapes) {
-    least = std::min(least, leg_distance(shape, leg.a, leg.b));
+    min_distance = std::min(min_distance, leg_distance(shape, leg.a, leg.b));
   }
-  return least;
+  return min_distance;
 }
 
 bool plainly_blocked(const City& city, const Leg& leg) {

@@ -33,19 +33,19 @@ City::City(bool low, std::size_t queries) {
   Request request;
   request.world = std::make_shared<const World>(World().with({"city", "city", layer, true}));
   request.volume = grid.spec().box();
-  const double least = (request.volume.max - request.volume.min).norm() / 2;
+  const double min_distance = (request.volume.max - request.volume.min).norm() / 2;
   while (queries_.size() < queries) {
     Cell ends[2];
     for (Cell& end : ends) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int most = axis == 2 && low ? 20 : grid.spec().counts[axis];
-        end[axis] = int(random.integer(0, most - 1));
+        const int count = axis == 2 && low ? 20 : grid.spec().counts[axis];
+        end[axis] = int(random.integer(0, count - 1));
       }
     }
     request.start.position = grid.spec().centre(ends[0]);
     request.goal.position = grid.spec().centre(ends[1]);
     if (grid.blocked(ends[0]) || grid.blocked(ends[1]) ||
-        (request.goal.position - request.start.position).norm() < least) {
+        (request.goal.position - request.start.position).norm() < min_distance) {
       continue;
     }
     open_ += leg_ok(std::nullopt, request.start.position, request.goal.position, request);

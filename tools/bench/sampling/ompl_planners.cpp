@@ -61,7 +61,7 @@ class FreeLeg : public ob::MotionValidator {
 };
 
 template <class Planner>
-ob::PlannerPtr made(const ob::SpaceInformationPtr& info, double range) {
+ob::PlannerPtr planner_of(const ob::SpaceInformationPtr& info, double range) {
   auto planner = std::make_shared<Planner>(info);
   if constexpr (requires { planner->setRange(range); }) {
     if (range > 0) {
@@ -71,11 +71,12 @@ ob::PlannerPtr made(const ob::SpaceInformationPtr& info, double range) {
   return planner;
 }
 
-ob::PlannerPtr made(const std::string& name, const ob::SpaceInformationPtr& info, double range) {
-  return name == "RRTConnect"        ? made<og::RRTConnect>(info, range)
-         : name == "RRTstar"         ? made<og::RRTstar>(info, range)
-         : name == "InformedRRTstar" ? made<og::InformedRRTstar>(info, range)
-         : name == "BITstar"         ? made<og::BITstar>(info, range)
+ob::PlannerPtr planner_of(const std::string& name, const ob::SpaceInformationPtr& info,
+                          double range) {
+  return name == "RRTConnect"        ? planner_of<og::RRTConnect>(info, range)
+         : name == "RRTstar"         ? planner_of<og::RRTstar>(info, range)
+         : name == "InformedRRTstar" ? planner_of<og::InformedRRTstar>(info, range)
+         : name == "BITstar"         ? planner_of<og::BITstar>(info, range)
                                      : throw Error("no planner of OMPL's is called " + name);
 }
 }  // namespace
@@ -107,7 +108,7 @@ OmplPlanner::OmplPlanner(const std::string& planner, const Request& request, Omp
     info->setMotionValidator(std::make_shared<FreeLeg>(info, request));
   }
   info->setup();
-  impl_->planner = made(planner, info, range);
+  impl_->planner = planner_of(planner, info, range);
 }
 
 OmplPlanner::~OmplPlanner() = default;

@@ -48,7 +48,7 @@ void grow_nearest(KdTree& tree, std::size_t count) {
 /// Extends the node with the minimum sum of distances, once toward the goal, then toward the
 /// sample. The goal is walled in, otherwise the nodes form a star around it; a node that has failed
 /// 50 times is erased.
-void grow_least_sum(KdTree& tree, std::size_t count) {
+void grow_min_sum(KdTree& tree, std::size_t count) {
   constexpr double kWall = 2000;
   constexpr int kMaxFailures = 50;
   struct Node {
@@ -80,11 +80,11 @@ std::size_t nearest(const KdTree& tree, const Vec3& sample) { return tree.neares
 
 std::size_t nearest_linear(const KdTree& tree, const Vec3& sample) {
   std::size_t best = KdTree::kNone;
-  double least = kInfinity;
+  double min_found = kInfinity;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const double square = (tree.point(i) - sample).squaredNorm();
-    if (square < least) {
-      least = square;
+    if (square < min_found) {
+      min_found = square;
       best = i;
     }
   }
@@ -97,11 +97,11 @@ std::size_t min_sum(const KdTree& tree, const Vec3& sample) {
 
 std::size_t min_sum_linear(const KdTree& tree, const Vec3& sample) {
   std::size_t best = KdTree::kNone;
-  double least = kInfinity;
+  double min_found = kInfinity;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const double sum = (tree.point(i) - sample).norm() + (tree.point(i) - kGoal).norm();
-    if (sum < least && tree.contains(i)) {
-      least = sum;
+    if (sum < min_found && tree.contains(i)) {
+      min_found = sum;
       best = i;
     }
   }
@@ -195,7 +195,7 @@ void add_point_rows() {
     const std::string of = "/" + std::to_string(count) + "/";
     const auto scattered = std::make_shared<LatePoints>(scatter, count);
     const auto basic = std::make_shared<LatePoints>(grow_nearest, count);
-    const auto improved = std::make_shared<LatePoints>(grow_least_sum, count);
+    const auto improved = std::make_shared<LatePoints>(grow_min_sum, count);
     add_row("nearest/scattered" + of + "tree", scattered, nearest, nearest_linear);
     add_row("nearest/scattered" + of + "linear", scattered, nearest_linear, nearest);
     add_row("nearest/grown" + of + "tree", basic, nearest, nearest_linear);
@@ -208,7 +208,7 @@ void add_point_rows() {
   }
   for (const std::size_t count : {100, 10'000, 100'000, 1'000'000}) {
     add_growth_row("growth/nearest/", grow_nearest, count);
-    add_growth_row("growth/min_sum/", grow_least_sum, count);
+    add_growth_row("growth/min_sum/", grow_min_sum, count);
   }
 }
 }  // namespace altiplan::bench

@@ -67,8 +67,8 @@ struct City {
       for (Cell* c : {&query.start, &query.goal}) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           // Close to the ground, among the towers.
-          const int most = axis == 2 ? std::max(counts[2] / 4, 1) : counts[axis];
-          (*c)[axis] = int(random.integer(0, most - 1)) *
+          const int count = axis == 2 ? std::max(counts[2] / 4, 1) : counts[axis];
+          (*c)[axis] = int(random.integer(0, count - 1)) *
                        (cells.spec().counts[2] == 1 && axis == 2 ? 1 : scale);
         }
       }

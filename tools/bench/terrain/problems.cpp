@@ -49,7 +49,7 @@ Flight flight_over(const Relief& relief, double ceiling, double level, double no
                    double cell_m) {
   const HeightField& field = *relief.field;
   const Box ground = relief.layer->bounds();
-  const double least = height_quantile(field, level) + kClearance;
+  const double min_height = height_quantile(field, level) + kClearance;
   const Vec3 low(ground.min.x(), ground.min.y(), height_quantile(field, kFloor));
   const Vec3 high(ground.max.x(), ground.max.y(), height_quantile(field, ceiling) + kClearance);
   const Vec3 sides = high - low;
@@ -60,7 +60,7 @@ Flight flight_over(const Relief& relief, double ceiling, double level, double no
   const auto above = [&](const Vec3& p) {
     const double top =
         field.max_height(p.x() - cell_m, p.y() - cell_m, p.x() + cell_m, p.y() + cell_m);
-    return std::max(least, top + kEnds);
+    return std::max(min_height, top + kEnds);
   };
   Vec3 start = valley(0.15, 0.15);
   start.z() = above(start);
