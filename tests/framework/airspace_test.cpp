@@ -18,10 +18,10 @@ namespace {
 
 using kit::Airspace;
 using kit::AirspaceIndex;
-using kit::AirspaceLimit;
-using kit::AirspaceZone;
 using kit::Restriction;
-using Datum = AirspaceLimit::Datum;
+using kit::Zone;
+using kit::ZoneLimit;
+using Datum = ZoneLimit::Datum;
 
 Airspace read(const std::string& text, const std::string& file = "file") {
   return kit::read_airspace(file, text).value();
@@ -77,22 +77,22 @@ TEST(Airspace, ReadsTheGivenFilesWhole) {
   ALTIPLAN_DATA_OR_SKIP(folder, "airspace");
   const Airspace swiss = given(folder, "ed269-ch.json");
   ASSERT_EQ(swiss.zones.size(), 4U);
-  EXPECT_EQ(swiss.zones[0].volumes[0].upper, AirspaceLimit{});  // 99999 m
-  EXPECT_EQ(swiss.zones[2].volumes[0].upper, (AirspaceLimit{Datum::ground, 120}));
+  EXPECT_EQ(swiss.zones[0].volumes[0].upper, ZoneLimit{});  // 99999 m
+  EXPECT_EQ(swiss.zones[2].volumes[0].upper, (ZoneLimit{Datum::ground, 120}));
   EXPECT_EQ(swiss.zones[3].volumes.size(), 2U);
   const Airspace swedish = given(folder, "ed318-se.json");
   ASSERT_EQ(swedish.zones.size(), 3U);
   EXPECT_EQ(swedish.format, Airspace::Format::ed318);
-  EXPECT_EQ(swedish.zones[2].volumes[0].upper, (AirspaceLimit{Datum::sea, 1500 * 0.3048}));
+  EXPECT_EQ(swedish.zones[2].volumes[0].upper, (ZoneLimit{Datum::sea, 1500 * 0.3048}));
   EXPECT_EQ(swedish.zones[2].periods[0].hours.size(), 2U);
   const Airspace grid = given(folder, "faa-uasfm.json");
   ASSERT_EQ(grid.zones.size(), 2U);
-  EXPECT_EQ(grid.zones[0].volumes[0].lower, AirspaceLimit{});  // CEILING 0
-  EXPECT_EQ(grid.zones[1].volumes[0].lower, (AirspaceLimit{Datum::ground, 200 * 0.3048}));
+  EXPECT_EQ(grid.zones[0].volumes[0].lower, ZoneLimit{});  // CEILING 0
+  EXPECT_EQ(grid.zones[1].volumes[0].lower, (ZoneLimit{Datum::ground, 200 * 0.3048}));
   const Airspace british = given(folder, "aixm51-gb.xml");
   ASSERT_EQ(british.zones.size(), 6U);
-  EXPECT_EQ(british.zones[1].volumes[0].lower, (AirspaceLimit{Datum::standard, 1524}));
-  EXPECT_EQ(british.zones[1].volumes[0].upper, AirspaceLimit{});  // FL999
+  EXPECT_EQ(british.zones[1].volumes[0].lower, (ZoneLimit{Datum::standard, 1524}));
+  EXPECT_EQ(british.zones[1].volumes[0].upper, ZoneLimit{});  // FL999
   EXPECT_TRUE(noted(british, "Mon-Sat SR to SS."));
   const Airspace sample = given(folder, "openair_sample.txt");
   EXPECT_EQ(sample.zones.size(), 25U);  // of 26 entries one is terrain
@@ -162,8 +162,8 @@ TEST(Airspace, RefusesZonesWithoutAPlace) {
 
 TEST(Airspace, OpenAirHasUnitsTimesAndTypes) {
   const auto zone = [](const std::string& records) { return read(openair(records)).zones.at(0); };
-  EXPECT_EQ(zone("").volumes[0].lower, (AirspaceLimit{Datum::ground, 152.4}));
-  EXPECT_EQ(zone("").volumes[0].upper, (AirspaceLimit{Datum::standard, 3048}));
+  EXPECT_EQ(zone("").volumes[0].lower, (ZoneLimit{Datum::ground, 152.4}));
+  EXPECT_EQ(zone("").volumes[0].upper, (ZoneLimit{Datum::standard, 3048}));
   EXPECT_EQ(zone("AY CTR").restriction, Restriction::keep_out);  // the class is R
   EXPECT_FALSE(zone("AA 2023-12-16T12:00Z/2023-12-16T13:00Z").is_active(0, 1e9));
   EXPECT_TRUE(zone("AA 2023-12-16T12:00Z/2023-12-16T13:00Z").is_active(1702730000, 1702730000));
@@ -174,11 +174,11 @@ TEST(Airspace, OpenAirHasUnitsTimesAndTypes) {
     records.replace(records.find("FL100"), 5, text);
     return read(records).zones[0].volumes[0].upper;
   };
-  EXPECT_EQ(upper("2500 m AGL"), (AirspaceLimit{Datum::ground, 2500}));
-  EXPECT_EQ(upper("17000ft (Mo-Fri)"), (AirspaceLimit{Datum::sea, 17000 * 0.3048}));
-  EXPECT_EQ(upper("4500MSL"), (AirspaceLimit{Datum::sea, 4500 * 0.3048}));
-  EXPECT_EQ(upper("UNLIMITED"), AirspaceLimit{});
-  EXPECT_EQ(upper("9 furlongs"), AirspaceLimit{});
+  EXPECT_EQ(upper("2500 m AGL"), (ZoneLimit{Datum::ground, 2500}));
+  EXPECT_EQ(upper("17000ft (Mo-Fri)"), (ZoneLimit{Datum::sea, 17000 * 0.3048}));
+  EXPECT_EQ(upper("4500MSL"), (ZoneLimit{Datum::sea, 4500 * 0.3048}));
+  EXPECT_EQ(upper("UNLIMITED"), ZoneLimit{});
+  EXPECT_EQ(upper("9 furlongs"), ZoneLimit{});
 }
 
 /// Points of the arcs that are in the zone by any reckoning.

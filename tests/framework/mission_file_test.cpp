@@ -110,9 +110,10 @@ TEST(MissionFile, TakesKindsFramesAndHomeFromAPlan) {
   const MissionFile old = read_mission((folder / "qgc_SectionTest.plan").string());
   EXPECT_EQ(old.items[1].at.lon, -122.08925023);
   const MissionFile fence = read_mission((folder / "qgc_geofence_home_base.plan").string());
-  EXPECT_TRUE(fence.zones[0].keep_in);
-  EXPECT_FALSE(fence.zones[1].keep_in);
-  EXPECT_EQ(fence.zones[0].polygon.outline[1], (Point2{-77.49709285710168, 38.75094024382851}));
+  EXPECT_TRUE(fence.zones[0].keeps_in());
+  EXPECT_FALSE(fence.zones[1].keeps_in());
+  EXPECT_EQ(fence.zones[0].volumes[0].polygon.outline[1],
+            (Point2{-77.49709285710168, 38.75094024382851}));
 }
 
 TEST(MissionFile, TakesHomeTakeOffAndFramesFromWaypoints) {
@@ -131,8 +132,8 @@ TEST(MissionFile, TakesHomeTakeOffAndFramesFromWaypoints) {
   EXPECT_EQ(sea.items.front().at.frame, AltitudeFrame::sea);
   const MissionFile fence =
       read_mission((folder / "mavproxy_springvalleybottom-foamy-fence.txt").string());
-  EXPECT_TRUE(fence.zones[0].keep_in);
-  EXPECT_EQ(fence.zones[0].polygon.outline.size(), 4U);
+  EXPECT_TRUE(fence.zones[0].keeps_in());
+  EXPECT_EQ(fence.zones[0].volumes[0].polygon.outline.size(), 4U);
 }
 
 TEST(MissionFile, ALoiterHasACircleIfItsRadiusAndItsTangentialExitAreGiven) {
@@ -159,10 +160,10 @@ TEST(MissionFile, ReadsCirclesOfBothFenceForms) {
                    "QGC WPL 110\r\n0\t0\t0\t5003\t120.5\t0\t0\t0\t60.1\t25.2\t0\t0\r\n"
                    "1\t0\t0\t5004\t30\t0\t0\t0\t60.11\t25.21\t0\t0\r\n\r\n");
   ASSERT_EQ(wpl.zones.size(), 2U);
-  EXPECT_TRUE(wpl.zones[0].keep_in);
-  EXPECT_EQ(wpl.zones[0].radius_m, 120.5);
-  EXPECT_EQ(wpl.zones[0].centre, (Point2{25.2, 60.1}));
-  EXPECT_FALSE(wpl.zones[1].keep_in);
+  EXPECT_TRUE(wpl.zones[0].keeps_in());
+  EXPECT_EQ(wpl.zones[0].volumes[0].radius_m, 120.5);
+  EXPECT_EQ(wpl.zones[0].volumes[0].centre, (Point2{25.2, 60.1}));
+  EXPECT_FALSE(wpl.zones[1].keeps_in());
 }
 
 std::string kml(const std::string& placemarks) {
@@ -187,10 +188,10 @@ TEST(MissionFile, ReadsKmlLinesPointsAndExtrudedPolygons) {
   EXPECT_EQ(both.items[1].at.altitude_m, 120);
   ASSERT_EQ(both.zones.size(), 1U);
   EXPECT_EQ(both.zones[0].name, "A & B");
-  EXPECT_EQ(both.zones[0].ceiling_m, 300);
-  EXPECT_FALSE(both.zones[0].floor_m.has_value());
-  EXPECT_FALSE(both.zones[0].has_role);
-  EXPECT_EQ(both.zones[0].polygon.holes.size(), 1U);
+  EXPECT_EQ(both.zones[0].volumes[0].upper, ZoneLimit::sea(300));
+  EXPECT_EQ(both.zones[0].volumes[0].lower, ZoneLimit{});
+  EXPECT_EQ(both.zones[0].restriction, Restriction::unspecified);
+  EXPECT_EQ(both.zones[0].volumes[0].polygon.holes.size(), 1U);
   const std::string point =
       "<Placemark><Point><altitudeMode>absolute</altitudeMode><coordinates>25,60,5</coordinates>"
       "</Point></Placemark>";

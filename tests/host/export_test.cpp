@@ -18,7 +18,7 @@ namespace {
 
 using kit::AltitudeFrame;
 using kit::MissionItem;
-using kit::MissionZone;
+using kit::Zone;
 using Format = kit::MissionFile::Format;
 
 /// Level ground at 120 m.
@@ -172,9 +172,11 @@ TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
   const kit::MissionFile plan = kit::read_mission("r.plan", *result.text);
   ASSERT_EQ(plan.zones.size(), 3U);
   EXPECT_EQ(std::count_if(plan.zones.begin(), plan.zones.end(),
-                          [](const MissionZone& zone) { return zone.keep_in; }),
+                          [](const Zone& zone) { return zone.keeps_in(); }),
             1);
-  const MissionZone& circle = plan.zones.back();  // circles stand after polygons
+  EXPECT_EQ(plan.zones.front().name, "yard");
+  EXPECT_EQ(plan.zones.back().name, "site");
+  const kit::ZoneVolume& circle = plan.zones.back().volumes.at(0);  // circles come after polygons
   EXPECT_GE(circle.radius_m, 100);  // in true metres: the frame is exact at another latitude
   EXPECT_LT(circle.radius_m, 100.2);
   const auto centre = scene.mission.truth.frame().to_local(circle.centre[0], circle.centre[1]);
@@ -199,10 +201,10 @@ TEST(Export, KmlAndItsReaderKeepLimitsRolesAndHoles) {
   const kit::MissionFile map = kit::read_mission("r.kml", *result.text);
   ASSERT_EQ(map.zones.size(), 3U);
   EXPECT_EQ(map.zones[0].name, "site");
-  EXPECT_EQ(map.zones[0].ceiling_m, 400);
-  EXPECT_EQ(map.zones[0].polygon.outline.size(), 64U);
-  EXPECT_EQ(map.zones[1].polygon.holes.size(), 1U);
-  EXPECT_TRUE(map.zones[2].keep_in);
+  EXPECT_EQ(map.zones[0].volumes.at(0).upper, kit::ZoneLimit::sea(400));
+  EXPECT_EQ(map.zones[0].volumes.at(0).polygon.outline.size(), 64U);
+  EXPECT_EQ(map.zones[1].volumes.at(0).polygon.holes.size(), 1U);
+  EXPECT_TRUE(map.zones[2].keeps_in());
 }
 
 TEST(Export, FormatsWithoutAPlaceForZonesSaySo) {
@@ -279,9 +281,8 @@ TEST(Export, MoreItemsThanAutopilotsStoreAreWarnedOf) {
 
 TEST(Export, ThinningKeepsEndsAndViaPoints) {
   const Scene scene(kAround, true, nullptr);
-  const std::vector<Goal> via{{kAround[2], 0.5}};
   EXPECT_EQ(thinned(kAround, 2, scene.mission.request, {}), (std::vector<std::size_t>{0, 4}));
-  EXPECT_EQ(thinned(kAround, 2, scene.mission.request, via), (std::vector<std::size_t>{0, 2, 4}));
+  EXPECT_EQ(thinned(kAround, 2, scene.mission.request, {2}), (std::vector<std::size_t>{0, 2, 4}));
   EXPECT_EQ(thinned(kAround, 9, scene.mission.request, {}).size(), kAround.size());
 }
 

@@ -13,9 +13,9 @@
 
 namespace {
 using namespace altiplan;
-using kit::AirspaceLimit;
+using kit::ZoneLimit;
 
-std::string limit_text(const AirspaceLimit& limit) {
+std::string limit_text(const ZoneLimit& limit) {
   constexpr const char* kNames[] = {"none", "ground", "sea", "standard"};
   char text[64];
   std::snprintf(text, sizeof text, "%s %.3f", kNames[int(limit.datum)], limit.metres);
@@ -25,10 +25,10 @@ std::string limit_text(const AirspaceLimit& limit) {
 void print(const kit::Airspace& airspace) {
   constexpr const char* kNames[] = {"keep_out", "ask", "inform"};
   std::cout << "format\t" << kit::format_name(airspace.format) << "\n";
-  for (const kit::AirspaceZone& zone : airspace.zones) {
+  for (const kit::Zone& zone : airspace.zones) {
     std::cout << "zone\t" << zone.id << "\t" << zone.name << "\t" << zone.type << "\t"
               << kNames[int(zone.restriction)] << "\t" << zone.periods.size() << "\n";
-    for (const kit::AirspaceVolume& volume : zone.volumes) {
+    for (const kit::ZoneVolume& volume : zone.volumes) {
       std::cout << "volume\t" << limit_text(volume.lower) << "\t" << limit_text(volume.upper)
                 << "\t" << volume.polygon.outline.size() << "\t" << volume.polygon.holes.size()
                 << "\n";
@@ -49,7 +49,7 @@ void answer(const kit::AirspaceIndex& index) {
       place.ground_m.reset();
     }
     std::string found;
-    index.visit(place, std::stod(time), std::stod(time), [&](const kit::AirspaceZone& zone) {
+    index.visit(place, std::stod(time), std::stod(time), [&](const kit::Zone& zone) {
       found += (found.empty() ? "" : " ") + std::to_string(&zone - index.zones().data());
       return true;
     });

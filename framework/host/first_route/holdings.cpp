@@ -10,7 +10,7 @@
 namespace altiplan::host {
 namespace {
 
-using Datum = kit::AirspaceLimit::Datum;
+using Datum = kit::ZoneLimit::Datum;
 
 std::string joined(const std::map<std::string, std::size_t>& counts) {
   std::string text;
@@ -20,7 +20,7 @@ std::string joined(const std::map<std::string, std::size_t>& counts) {
   return text;
 }
 
-std::string words(const kit::AirspaceLimit& limit) {
+std::string words(const kit::ZoneLimit& limit) {
   switch (limit.datum) {
     case Datum::ground:
       return "above ground";
@@ -40,6 +40,11 @@ class Extent {
     // 178.5 to 181.5 across the antimeridian
     const double turns = box_.is_empty() ? 0 : std::round((box_.min.x() - lon) / 360);
     box_ = box_.with({lon + 360 * turns, lat, 0});
+  }
+  void add(const std::vector<kit::Zone>& zones) {
+    for (const kit::Point2& p : kit::corners_of(zones)) {
+      add(p[0], p[1]);
+    }
   }
   std::string text() const {
     const auto range = [](double low, double high) {
@@ -83,15 +88,10 @@ std::vector<std::string> heights_of(const kit::MissionFile& mission) {
 
 void add_fence(const kit::MissionFile& mission, Extent& extent, FileInfo& info) {
   std::size_t keep_in = 0;
-  for (const kit::MissionZone& zone : mission.zones) {
-    keep_in += zone.keep_in;
-    for (const kit::Point2& p : zone.polygon.outline) {
-      extent.add(p[0], p[1]);
-    }
-    if (zone.polygon.outline.empty()) {
-      extent.add(zone.centre[0], zone.centre[1]);
-    }
+  for (const kit::Zone& zone : mission.zones) {
+    keep_in += zone.keeps_in();
   }
+  extent.add(mission.zones);
   if (!mission.zones.empty()) {
     info.facts.push_back("fence: " + counted(keep_in, "keep-in zone") + ", " +
                          counted(mission.zones.size() - keep_in, "keep-out zone"));
@@ -105,13 +105,11 @@ std::vector<std::string> facts_of(const kit::Airspace& airspace) {
   std::size_t with_hours = 0;
   std::size_t with_period = 0;
   Extent extent;
-  for (const kit::AirspaceZone& zone : airspace.zones) {
-    for (const kit::AirspaceVolume& volume : zone.volumes) {
+  extent.add(airspace.zones);
+  for (const kit::Zone& zone : airspace.zones) {
+    for (const kit::ZoneVolume& volume : zone.volumes) {
       ++lower[words(volume.lower)];
       ++upper[words(volume.upper)];
-      for (const kit::Point2& p : volume.polygon.outline) {
-        extent.add(p[0], p[1]);
-      }
     }
     const auto has = [&](auto what) {
       return std::any_of(zone.periods.begin(), zone.periods.end(), what);

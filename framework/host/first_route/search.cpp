@@ -42,8 +42,8 @@ Cells cells_of(const WishedHeights& heights, const SearchSpace& space) {
     cells.high = simple(std::clamp(size.z() / 40, 5.0, 50.0) / space.fineness);
     cells.across = std::max(extent(space.volume) / 160, 5.0) / space.fineness;
   }
-  const double least = std::sqrt(size.x() * size.y() * size.z() / cells.high / kMaxCells);
-  cells.across = simple(std::max(cells.across, least));
+  const double min_across = std::sqrt(size.x() * size.y() * size.z() / cells.high / kMaxCells);
+  cells.across = simple(std::max(cells.across, min_across));
   return cells;
 }
 

@@ -9,8 +9,8 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kStep = 0.1;  ///< metres
-constexpr int kMost = 10'000;  ///< steps
+constexpr double kStep = 0.1;      ///< metres
+constexpr int kMaxSteps = 10'000;  ///< steps
 /// Steps between tries, or an eighth of those made: what is valid for less than that may be missed.
 constexpr int kStride = 20;
 constexpr int kDirections = 16;
@@ -100,14 +100,14 @@ class Trial {
     return true;
   }
 
-  /// The least number of steps, found by strides and halving; 0: none up to `most`.
-  int least(int most) {
+  /// The minimum number of steps, found by strides and halving; 0: none up to `max_steps`.
+  int min_steps(int max_steps) {
     int few = 0;
     int enough = 1;
     while (!is_valid(enough)) {
       few = enough;
       enough += std::max(std::min(enough, kStride), enough / 8);
-      if (enough > most) {
+      if (enough > max_steps) {
         return 0;
       }
     }
@@ -136,10 +136,10 @@ struct Change {
 /// The least change of the leg's ends, one of them or both, along one of the directions; with both,
 /// the leg alone need be valid.
 template <class Directions>
-std::optional<Change> least_change(const Subject& subject, std::size_t leg, bool both,
-                                   const Directions& directions) {
+std::optional<Change> min_change(const Subject& subject, std::size_t leg, bool both,
+                                 const Directions& directions) {
   std::optional<Change> best;
-  int least = kMost;
+  int min_steps = kMaxSteps;
   for (const std::size_t waypoint : {leg, leg + 1}) {
     if (subject.is_led(waypoint)) {
       continue;
@@ -150,10 +150,10 @@ std::optional<Change> least_change(const Subject& subject, std::size_t leg, bool
     const std::size_t last_leg = both ? leg : std::min(waypoint, subject.points.size() - 2);
     for (const Vec3& direction : directions) {
       Trial trial(subject, first, last, first_leg, last_leg, direction);
-      const int steps = trial.least(least);
-      if (steps != 0 && (!best || steps < least)) {
+      const int steps = trial.min_steps(min_steps);
+      if (steps != 0 && (!best || steps < min_steps)) {
         best = Change{first, last, steps * kStep * direction};
-        least = steps;
+        min_steps = steps;
       }
     }
     if (both) {
@@ -175,8 +175,8 @@ std::array<Vec3, kDirections> around() {
 }
 
 std::optional<Change> of_one_waypoint(const Subject& subject, std::size_t leg) {
-  const auto by_height = least_change(subject, leg, false, up_and_down());
-  return by_height ? by_height : least_change(subject, leg, false, around());
+  const auto by_height = min_change(subject, leg, false, up_and_down());
+  return by_height ? by_height : min_change(subject, leg, false, around());
 }
 }  // namespace
 
@@ -213,19 +213,19 @@ std::optional<Route> cured(const Route& route, const Request& request, const Bon
   }
   Subject subject(route.waypoints(), bonds, request);
   Polyline& points = subject.points;
-  const std::size_t most_rounds = 20 * points.size();
+  const std::size_t max_rounds = 20 * points.size();
   std::size_t leg = 0;
-  for (std::size_t round = 0; round < most_rounds; ++round) {
+  for (std::size_t round = 0; round < max_rounds; ++round) {
     leg = subject.first_violated(leg);
     if (leg + 1 >= points.size()) {
       return Route(std::move(points));
     }
-    auto change = least_change(subject, leg, false, up_and_down());
+    auto change = min_change(subject, leg, false, up_and_down());
     if (!change) {
-      change = least_change(subject, leg, true, up_and_down());
+      change = min_change(subject, leg, true, up_and_down());
     }
     if (!change) {
-      change = least_change(subject, leg, false, around());
+      change = min_change(subject, leg, false, around());
     }
     if (!change) {
       return std::nullopt;

@@ -75,19 +75,22 @@ Vec3 worst_place(Vec3 a, Vec3 b, const Violation& whole, const Request& request)
   return (a + b) / 2;
 }
 
-/// The name of the layer's part that holds the place or is nearest to it, if it has names.
+/// The name of the layer's part that holds the place or is nearest to it, if it has names. Of
+/// keep-in zones it is the one that the place is deepest in, as far as its border.
 std::string part_at(const Layer& layer, const Vec3& p) {
   const std::optional<Drawing> drawing = layer.environment->drawing();
-  std::string name;
-  double nearest = kInfinity;
+  std::string names[2];  // of what is kept out, and in
+  double nearest[2] = {kInfinity, kInfinity};
   for (const Drawn& drawn : drawing ? drawing->shapes : std::vector<Drawn>{}) {
+    const bool keeps_in = drawn.role == Drawn::Role::keep_in;
     const double distance = signed_distance(drawn.shape, p);
-    if (distance < nearest) {
-      nearest = distance;
-      name = drawn.name;
+    if (distance < nearest[keeps_in]) {
+      nearest[keeps_in] = distance;
+      names[keeps_in] = drawn.name;
     }
   }
-  return name;
+  const double from_border = std::isfinite(nearest[1]) ? -nearest[1] : kInfinity;
+  return nearest[0] <= from_border ? names[0] : names[1];
 }
 
 /// Adds the name of the zone to a message about a layer.
@@ -122,11 +125,11 @@ void name_void(Finding& finding, const Request& request) {
 /// The place of a turn where it is lowest above ground, else its middle.
 Vec3 lowest_place(const Leg& leg, const World& world) {
   Vec3 lowest = leg.at(0.5);
-  double least = kInfinity;
+  double min_height = kInfinity;
   for (const Vec3& p : leg.chords(kChordTolerance)) {
     const std::optional<double> ground = world.ground(p.x(), p.y());
-    if (ground && p.z() - *ground < least) {
-      least = p.z() - *ground;
+    if (ground && p.z() - *ground < min_height) {
+      min_height = p.z() - *ground;
       lowest = p;
     }
   }
@@ -148,8 +151,8 @@ Finding finding_of(const Violation& violation, const PlanReport& report, const R
   return finding;
 }
 
-/// True if a leg into the ground has been told already.
-bool is_told(const PlanReport& report, const Violation& violation, const Request& request) {
+/// True if a leg into the ground has been reported already.
+bool is_reported(const PlanReport& report, const Violation& violation, const Request& request) {
   return violation.constraint == "clearance" &&
          std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& other) {
            return other.violation.at == violation.at &&
@@ -160,15 +163,15 @@ bool is_told(const PlanReport& report, const Violation& violation, const Request
 
 /// One finding a leg and rule, the first legs with a cure.
 void add_violations(PlanReport& report, const CheckResult& verdict, const Request& request) {
-  constexpr std::size_t kMostCures = 50;             // each may judge thousands of legs
+  constexpr std::size_t kMaxCures = 50;              // each may judge thousands of legs
   std::map<std::size_t, std::optional<Cure>> cures;  // of legs
   const Bonds bonds = report.bonds();
   for (const Violation& violation : verdict.violations) {
-    if (is_told(report, violation, request)) {
+    if (is_reported(report, violation, request)) {
       continue;
     }
     Finding finding = finding_of(violation, report, request);
-    if (cures.size() < kMostCures && !cures.contains(violation.at)) {
+    if (cures.size() < kMaxCures && !cures.contains(violation.at)) {
       cures[violation.at] = cure(report.imported.route, violation, request, bonds);
     }
     if (const auto found = cures.find(violation.at); found != cures.end()) {
@@ -176,8 +179,8 @@ void add_violations(PlanReport& report, const CheckResult& verdict, const Reques
     }
     report.findings.push_back(std::move(finding));
   }
-  if (cures.size() == kMostCures && cures.rbegin()->first < verdict.violations.back().at) {
-    report.notes.push_back("cures are searched for the first " + std::to_string(kMostCures) +
+  if (cures.size() == kMaxCures && cures.rbegin()->first < verdict.violations.back().at) {
+    report.notes.push_back("cures are searched for the first " + std::to_string(kMaxCures) +
                            " legs that are violated");
   }
 }

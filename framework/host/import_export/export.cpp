@@ -9,6 +9,7 @@
 #include "host/import_export/fence.hpp"
 #include "host/import_export/placing.hpp"
 #include "host/import_export/thinning.hpp"
+#include "host/judge/judge.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -62,15 +63,18 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
   }
   const bool flown = !source.times.empty();
   const std::size_t count = source.route.size();
-  const std::size_t most = count - std::min(count, items - *options.max_items);
-  const std::vector<std::size_t> kept =
-      thinned(source.route, most, flown ? mission.track_request : mission.request,
-              flown ? std::vector<Goal>() : mission.via);
+  const std::size_t max_points = count - std::min(count, items - *options.max_items);
+  const std::vector<std::size_t> kept = thinned(
+      source.route, max_points, flown ? mission.track_request : mission.request, source.via);
   ExportSource less{source.name, part_of(source.route, kept), {}, source.events, source.telemetry};
   for (const std::size_t n : kept) {
     if (flown) {
       less.times.push_back(source.times[n]);
     }
+  }
+  for (const std::size_t n : source.via) {
+    const auto found = std::lower_bound(kept.begin(), kept.end(), n);
+    less.via.push_back(std::size_t(found - kept.begin()));
   }
   const std::size_t left = item_count(less, mission, options);
   if (left > *options.max_items) {
@@ -148,6 +152,9 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
       !problem.empty()) {
     result.messages.push_back("not written: the route is not valid: " + problem);
     return result;
+  }
+  if (source.times.empty()) {
+    source.via = via_indices(source.route, mission.via);
   }
   if (!thin(mission, source, options, notes)) {
     result.messages = std::move(notes);

@@ -36,6 +36,7 @@ struct ExportSource {
   std::vector<double> times;        ///< of a flight, one per point
   std::vector<FlightEvent> events;  ///< of the flight
   bool telemetry = false;           ///< the flight was a vehicle's
+  std::vector<std::size_t> via{};   ///< waypoints at via points; export_route finds a route's
 };
 
 struct Exported {

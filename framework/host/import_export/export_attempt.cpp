@@ -2,6 +2,7 @@
 #include "host/import_export/export_attempt.hpp"
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 #include "host/import_export/export_notes.hpp"
 #include "host/import_export/imported_route.hpp"
 #include "host/import_export/route_csv.hpp"
@@ -121,9 +122,9 @@ std::string problem_of(const Mission& mission, const ExportSource& source, const
 
 namespace {
 
-WrittenRoute places_of(const Mission& mission, const Route& route, const ExportOptions& options,
-                       double tolerance) {
-  return written_route(route, {options.loiters, tolerance}, mission.via, mission.request);
+WrittenRoute places_of(const Mission& mission, const ExportSource& source,
+                       const ExportOptions& options, double tolerance) {
+  return written_route(source.route, {options.loiters, tolerance}, source.via, mission.request);
 }
 
 /// Of a flight, its own times; its speeds are what the vehicle made of them.
@@ -146,7 +147,7 @@ std::size_t item_count(const WrittenRoute& written, const std::vector<PlaceTimin
 
 std::size_t item_count(const ExportSource& source, const Mission& mission,
                        const ExportOptions& options) {
-  const WrittenRoute written = places_of(mission, source.route, options, kArcTolerance);
+  const WrittenRoute written = places_of(mission, source, options, kArcTolerance);
   return item_count(written, timing_of(written, mission, source), mission, options);
 }
 
@@ -222,7 +223,7 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
   Attempt attempt{mission, source, place, options, std::move(text), {}, {}, ""};
   Decimals decimals;
   for (const double tolerance : kTolerances) {
-    attempt.written = places_of(mission, source.route, options, tolerance);
+    attempt.written = places_of(mission, source, options, tolerance);
     const WrittenRoute& written = attempt.written;
     attempt.timing = timing_of(written, mission, source);
     if (options.max_items &&

@@ -9,15 +9,14 @@
 namespace altiplan::host {
 namespace {
 
-using kit::MissionZone;
-
-struct Zone {
-  MissionZone zone;
+/// A zone of one volume.
+struct WorldZone {
+  kit::Zone zone;
   Shape flat;  ///< without vertical limits, and without a keep-out zone's holes
 };
 
-std::optional<double> finite(double value) {
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+kit::ZoneLimit limit(double z) {
+  return std::isfinite(z) ? kit::ZoneLimit::sea(z) : kit::ZoneLimit{};
 }
 
 kit::Ring lonlat(const Frame& frame, const kit::Ring& ring) {
@@ -30,11 +29,9 @@ kit::Ring lonlat(const Frame& frame, const kit::Ring& ring) {
 
 /// The true circle around the local one, or inside it for a keep-in zone: away from its origin the
 /// world's frame has a scale error.
-Zone circle_of(const Frame& frame, double x, double y, double radius, bool keep_in) {
+WorldZone circle_of(const Frame& frame, double x, double y, double radius, bool keep_in) {
   constexpr int kDirections = 64;
-  Zone result;
-  result.zone.centre = frame.to_lonlat(x, y);
-  const auto [lon, lat] = result.zone.centre;
+  const auto [lon, lat] = frame.to_lonlat(x, y);
   const Frame around = Frame::geographic(lon, lat, lat);
   double low = kInfinity;
   double high = 0;
@@ -45,17 +42,19 @@ Zone circle_of(const Frame& frame, double x, double y, double radius, bool keep_
     low = std::min(low, std::hypot(east, north));
     high = std::max(high, std::hypot(east, north));
   }
-  result.zone.radius_m = keep_in ? low : high;
+  WorldZone result;
+  result.zone.volumes = {{{}, {}, {}, {lon, lat}, keep_in ? low : high}};
   result.flat = Cylinder{x, y, radius};
   return result;
 }
 
-Zone prism_of(const Frame& frame, Prism prism, bool keep_in) {
-  Zone result;
-  result.zone.polygon.outline = lonlat(frame, prism.outline);
+WorldZone prism_of(const Frame& frame, Prism prism, bool keep_in) {
+  kit::Polygon polygon{lonlat(frame, prism.outline), {}};
   for (const kit::Ring& hole : prism.holes) {
-    result.zone.polygon.holes.push_back(lonlat(frame, hole));
+    polygon.holes.push_back(lonlat(frame, hole));
   }
+  WorldZone result;
+  result.zone.volumes = {{std::move(polygon), {}, {}}};
   if (!keep_in) {
     prism.holes.clear();
   }
@@ -64,9 +63,9 @@ Zone prism_of(const Frame& frame, Prism prism, bool keep_in) {
 }
 
 /// A box becomes a prism; a sphere, the cylinder around it.
-Zone zone_of(const Frame& frame, const Drawn& drawn) {
+WorldZone zone_of(const Frame& frame, const Drawn& drawn) {
   const bool keep_in = drawn.role == Drawn::Role::keep_in;
-  Zone result;
+  WorldZone result;
   const Box box = bounds(drawn.shape);
   if (const auto* cylinder = std::get_if<Cylinder>(&drawn.shape)) {
     result = circle_of(frame, cylinder->x, cylinder->y, cylinder->radius, keep_in);
@@ -83,15 +82,15 @@ Zone zone_of(const Frame& frame, const Drawn& drawn) {
                        {}},
                       keep_in);
   }
-  result.zone.keep_in = keep_in;
-  result.zone.floor_m = finite(box.min.z());
-  result.zone.ceiling_m = finite(box.max.z());
   result.zone.name = drawn.name;
+  result.zone.restriction = keep_in ? kit::Restriction::keep_in : kit::Restriction::keep_out;
+  result.zone.volumes.front().lower = limit(box.min.z());
+  result.zone.volumes.front().upper = limit(box.max.z());
   return result;
 }
 
-std::vector<Zone> all_zones(const World& world) {
-  std::vector<Zone> zones;
+std::vector<WorldZone> all_zones(const World& world) {
+  std::vector<WorldZone> zones;
   for (const Layer& layer : world.layers()) {
     const std::optional<Drawing> drawing = layer.environment->drawing();
     if (!drawing) {
@@ -99,7 +98,7 @@ std::vector<Zone> all_zones(const World& world) {
     }
     for (const Drawn& drawn : drawing->shapes) {
       if (drawn.role == Drawn::Role::keep_out || drawn.role == Drawn::Role::keep_in) {
-        Zone zone = zone_of(world.frame(), drawn);
+        WorldZone zone = zone_of(world.frame(), drawn);
         if (zone.zone.name.empty()) {
           zone.zone.name = layer.id + "_" + std::to_string(zones.size() + 1);
         }
@@ -123,7 +122,7 @@ bool crosses(const Shape& flat, const Polyline& route) {
 
 Fence zones_of(const World& world) {
   Fence fence;
-  for (Zone& zone : all_zones(world)) {
+  for (WorldZone& zone : all_zones(world)) {
     fence.zones.push_back(std::move(zone.zone));
   }
   return fence;
@@ -131,27 +130,28 @@ Fence zones_of(const World& world) {
 
 Fence flat_fence_of(const World& world, const Polyline& route) {
   Fence fence;
-  for (const Zone& zone : all_zones(world)) {
-    const MissionZone& said = zone.zone;
-    const bool has_limits = said.floor_m || said.ceiling_m;
-    const bool lost_hole = !said.keep_in && !said.polygon.holes.empty();
-    if (!said.keep_in && crosses(zone.flat, route)) {
-      fence.notes.push_back("zone '" + said.name + "' is left out of the fence: the route passes " +
+  for (const WorldZone& zone : all_zones(world)) {
+    const kit::ZoneVolume& volume = zone.zone.volumes.front();
+    const bool keeps_in = zone.zone.keeps_in();
+    const bool has_limits = volume.lower != kit::ZoneLimit{} || volume.upper != kit::ZoneLimit{};
+    const std::string name = "zone '" + zone.zone.name + "'";
+    if (!keeps_in && crosses(zone.flat, route)) {
+      fence.notes.push_back(name + " is left out of the fence: the route passes " +
                             (has_limits ? "above or below it" : "through its hole") +
                             ", which a fence cannot express");
       continue;
     }
     if (has_limits) {
-      fence.notes.push_back("zone '" + said.name +
-                            "' is in the fence at every height: a fence has no vertical limits");
+      fence.notes.push_back(name +
+                            " is in the fence at every height: a fence has no vertical limits");
     }
-    if (lost_hole) {
-      fence.notes.push_back("zone '" + said.name + "' is in the fence without its holes");
+    if (!keeps_in && !volume.polygon.holes.empty()) {
+      fence.notes.push_back(name + " is in the fence without its holes");
     }
-    fence.zones.push_back(said);
+    fence.zones.push_back(zone.zone);
   }
   const auto inside = std::count_if(fence.zones.begin(), fence.zones.end(),
-                                    [](const MissionZone& zone) { return zone.keep_in; });
+                                    [](const kit::Zone& zone) { return zone.keeps_in(); });
   if (inside > 1) {
     fence.notes.push_back(std::to_string(inside) +
                           " keep-in zones: autopilots differ on whether one of them must hold the "

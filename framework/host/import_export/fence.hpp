@@ -12,7 +12,7 @@ namespace altiplan::host {
 
 /// The keep-out and keep-in zones of a world, in longitude and latitude.
 struct Fence {
-  std::vector<kit::MissionZone> zones;
+  std::vector<kit::Zone> zones;
   std::vector<std::string> notes;  ///< what the format cannot express
 };
 

@@ -166,11 +166,12 @@ class Joining {
     const kit::MissionCircle& circle = *place.circle;
     const double climb = place.at.z() - result_.route.back().z();
     const double first = full_turn(circle.sense * (exit - entry));
-    const double least =
-        circle.until == Until::turns ? 2 * kPi * circle.turns : least_turn(climb, circle.radius_m);
+    const double min_turn = circle.until == Until::turns ? 2 * kPi * circle.turns
+                                                         : min_climb_turn(climb, circle.radius_m);
     // More circles than a leg may have are the same circle.
-    const double most = std::floor((kMaxTurn - first) / (2 * kPi));
-    const double circles = std::min(std::ceil((least - kExitTolerance - first) / (2 * kPi)), most);
+    const double max_circles = std::floor((kMaxTurn - first) / (2 * kPi));
+    const double circles =
+        std::min(std::ceil((min_turn - kExitTolerance - first) / (2 * kPi)), max_circles);
     const double angle = first + 2 * kPi * circles;
     heading_ = exit;
     if (angle <= 0) {  // it has the heading of the exit when it enters
@@ -182,7 +183,7 @@ class Joining {
     result_.route.push_back(leg);
   }
 
-  double least_turn(double climb, double radius) const {
+  double min_climb_turn(double climb, double radius) const {
     const double limit = climb < 0 ? limits_.max_descent() : limits_.max_climb;
     const double needed = std::abs(climb) / std::tan(limit) / radius;
     return needed > 0 && needed < kMaxTurn ? needed : 0;

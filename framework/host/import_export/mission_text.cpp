@@ -42,11 +42,15 @@ const char* name(kit::AltitudeFrame frame) {
   return "home";
 }
 
-kit::Polygon circle_outline(const kit::MissionZone& circle) {
+kit::Polygon polygon_of(const kit::Zone& zone) {
   constexpr int kCorners = 64;
+  const kit::ZoneVolume& circle = zone.volumes.front();
+  if (!circle.polygon.outline.empty()) {
+    return circle.polygon;
+  }
   const Frame frame = Frame::geographic(circle.centre[0], circle.centre[1], circle.centre[1]);
   const double radius =
-      circle.keep_in ? circle.radius_m : circle.radius_m / std::cos(kPi / kCorners);
+      zone.keeps_in() ? circle.radius_m : circle.radius_m / std::cos(kPi / kCorners);
   kit::Polygon polygon;
   for (int n = 0; n < kCorners; ++n) {
     const double angle = 2 * kPi * n / kCorners;

@@ -44,6 +44,6 @@ std::string rounded_text(double value, int decimals);
 double rounded(double value, int decimals);
 /// "sea", "ground" or "home".
 const char* name(kit::AltitudeFrame frame);
-/// The circle as a polygon of 64 corners: circumscribed for keep-out, inscribed for keep-in.
-kit::Polygon circle_outline(const kit::MissionZone& circle);
+/// The zone's polygon; of a circle, one of 64 corners, around it to keep out, within it to keep in.
+kit::Polygon polygon_of(const kit::Zone& zone);
 }  // namespace altiplan::host

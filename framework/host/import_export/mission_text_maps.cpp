@@ -11,7 +11,7 @@ using OrderedJson = nlohmann::ordered_json;
 using kit::AltitudeFrame;
 using kit::MissionItem;
 using kit::MissionPoint;
-using kit::MissionZone;
+using kit::Zone;
 
 constexpr const char* kXml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
@@ -34,8 +34,11 @@ const char* words_of(AltitudeFrame frame) {
                                           : "relative to the home position";
 }
 
-kit::Polygon outline_of(const MissionZone& zone) {
-  return zone.polygon.outline.empty() ? circle_outline(zone) : zone.polygon;
+const char* role_of(const Zone& zone) { return zone.keeps_in() ? "keep_in" : "keep_out"; }
+
+/// Metres above sea level; none: no limit.
+std::optional<double> altitude_of(const kit::ZoneLimit& limit) {
+  return limit.datum == kit::ZoneLimit::Datum::none ? std::nullopt : std::optional(limit.metres);
 }
 
 /// Writes KML with the indentation of its element.
@@ -51,7 +54,7 @@ class KmlWriter {
         "  <Style id=\"keep_out\"><PolyStyle><color>800000ff</color></PolyStyle></Style>\n"
         "  <Style id=\"keep_in\"><PolyStyle><color>4000ff00</color></PolyStyle></Style>\n";
     add_route(mission, frame);
-    for (const MissionZone& zone : mission.zones) {
+    for (const Zone& zone : mission.zones) {
       add_zone(zone);
     }
     out_ += "</Document>\n</kml>\n";
@@ -89,23 +92,24 @@ class KmlWriter {
   }
 
   /// Extruded from its ceiling down to the ground; both limits are added as data.
-  void add_zone(const MissionZone& zone) {
-    const char* role = zone.keep_in ? "keep_in" : "keep_out";
+  void add_zone(const Zone& zone) {
+    const char* role = role_of(zone);
+    const auto floor = altitude_of(zone.volumes.front().lower);
+    const auto ceiling = altitude_of(zone.volumes.front().upper);
     out_ += "  <Placemark>\n    <name>" + escaped(zone.name.empty() ? role : zone.name) +
             "</name>\n    <styleUrl>#" + role + "</styleUrl>\n    <ExtendedData>\n";
     add_data("role", role);
-    if (zone.floor_m) {
-      add_data("floor_m", rounded_text(*zone.floor_m, decimals_.metres));
+    if (floor) {
+      add_data("floor_m", rounded_text(*floor, decimals_.metres));
     }
-    if (zone.ceiling_m) {
-      add_data("ceiling_m", rounded_text(*zone.ceiling_m, decimals_.metres));
+    if (ceiling) {
+      add_data("ceiling_m", rounded_text(*ceiling, decimals_.metres));
     }
     out_ += "    </ExtendedData>\n    <Polygon>\n";
-    out_ += zone.ceiling_m
-                ? "      <extrude>1</extrude>\n      <altitudeMode>absolute</altitudeMode>\n"
-                : "      <altitudeMode>clampToGround</altitudeMode>\n";
-    const kit::Polygon polygon = outline_of(zone);
-    const double altitude = zone.ceiling_m.value_or(0);
+    out_ += ceiling ? "      <extrude>1</extrude>\n      <altitudeMode>absolute</altitudeMode>\n"
+                    : "      <altitudeMode>clampToGround</altitudeMode>\n";
+    const kit::Polygon polygon = polygon_of(zone);
+    const double altitude = ceiling.value_or(0);
     add_ring("outerBoundaryIs", polygon.outline, altitude);
     for (const kit::Ring& hole : polygon.holes) {
       add_ring("innerBoundaryIs", hole, altitude);
@@ -126,26 +130,24 @@ OrderedJson ring_json(const kit::Ring& ring, int decimals) {
   return corners;
 }
 
-OrderedJson zone_json(const MissionZone& zone, const Decimals& decimals) {
-  const kit::Polygon polygon = outline_of(zone);
+OrderedJson zone_json(const Zone& zone, const Decimals& decimals) {
+  const kit::Polygon polygon = polygon_of(zone);
   OrderedJson rings = OrderedJson::array({ring_json(polygon.outline, decimals.degrees)});
   for (const kit::Ring& hole : polygon.holes) {
     rings.push_back(ring_json(hole, decimals.degrees));
   }
-  const auto limit = [&](const std::optional<double>& value) {
+  const auto height = [&](const kit::ZoneLimit& limit) {
+    const std::optional<double> value = altitude_of(limit);
     return value ? OrderedJson(rounded(*value, decimals.metres)) : OrderedJson(nullptr);
   };
   return {{"type", "Feature"},
           {"properties",
            {{"name", zone.name},
-            {"role", zone.keep_in ? "keep_in" : "keep_out"},
-            {"floor_m", limit(zone.floor_m)},
-            {"ceiling_m", limit(zone.ceiling_m)}}},
+            {"role", role_of(zone)},
+            {"floor_m", height(zone.volumes.front().lower)},
+            {"ceiling_m", height(zone.volumes.front().upper)}}},
           {"geometry", {{"type", "Polygon"}, {"coordinates", rings}}}};
 }
-}  // namespace
-
-namespace {
 
 /// When the route is at its n-th item, UTC; "" where no start time is given.
 std::string iso_time(const MissionText& text, std::size_t n) {
@@ -207,7 +209,7 @@ std::string geojson_text(const MissionText& text) {
       OrderedJson::array({{{"type", "Feature"},
                            {"properties", properties},
                            {"geometry", {{"type", "LineString"}, {"coordinates", line}}}}});
-  for (const MissionZone& zone : mission.zones) {
+  for (const Zone& zone : mission.zones) {
     features.push_back(zone_json(zone, decimals));
   }
   const OrderedJson json{{"type", "FeatureCollection"}, {"features", features}};

@@ -39,15 +39,24 @@ SortedJson item_json(const PlanItem& item, std::size_t number) {
 
 SortedJson lat_lon(const PlanItem& item) { return {item.params[4], item.params[5]}; }
 
+/// `name` is our own key, which ground stations ignore.
+SortedJson named(SortedJson zone, const std::string& name) {
+  if (!name.empty()) {
+    zone["name"] = name;
+  }
+  return zone;
+}
+
 SortedJson polygon_json(const std::vector<PlanItem>& fence, std::size_t first,
                         std::size_t corners) {
   SortedJson outline = SortedJson::array();
   for (std::size_t n = first; n < first + corners; ++n) {
     outline.push_back(lat_lon(fence[n]));
   }
-  return {{"inclusion", fence[first].command == Command::kFencePolygonIn},
-          {"polygon", outline},
-          {"version", 1}};
+  return named({{"inclusion", fence[first].command == Command::kFencePolygonIn},
+                {"polygon", outline},
+                {"version", 1}},
+               fence[first].name);
 }
 
 SortedJson fence_json(const std::vector<PlanItem>& fence) {
@@ -57,9 +66,10 @@ SortedJson fence_json(const std::vector<PlanItem>& fence) {
     const PlanItem& item = fence[n];
     const bool keep_in = item.command == Command::kFenceCircleIn;
     if (keep_in || item.command == Command::kFenceCircleOut) {
-      circles.push_back({{"circle", {{"center", lat_lon(item)}, {"radius", item.params[0]}}},
-                         {"inclusion", keep_in},
-                         {"version", 1}});
+      circles.push_back(named({{"circle", {{"center", lat_lon(item)}, {"radius", item.params[0]}}},
+                               {"inclusion", keep_in},
+                               {"version", 1}},
+                              item.name));
       ++n;
     } else if (item.command == Command::kFencePolygonIn ||
                item.command == Command::kFencePolygonOut) {
@@ -130,7 +140,7 @@ std::string plan_text(const Plan& plan) {
         {"items", items}}},
       {"geoFence", fence_json(plan.fence)},
       {"rallyPoints", rally_json(plan.rally)}};
-  return json.dump(4) + "\n";
+  return json.dump(4, ' ', false, SortedJson::error_handler_t::replace) + "\n";
 }
 
 std::string waypoints_text(const Plan& plan) {

@@ -9,7 +9,6 @@ namespace altiplan::host {
 namespace {
 
 using kit::MissionItem;
-using kit::MissionZone;
 
 int command_of(const MissionItem& item, VehicleType vehicle) {
   using Until = kit::MissionCircle::Until;
@@ -87,33 +86,36 @@ PlanItem item_of(const MissionItem& item, const MissionText& text) {
 }
 
 /// Holes of a keep-in zone become keep-out zones; those of a keep-out zone cannot be expressed.
-std::vector<PlanItem> fence_of(const std::vector<MissionZone>& zones, const Decimals& decimals) {
+std::vector<PlanItem> fence_of(const std::vector<kit::Zone>& zones, const Decimals& decimals) {
   std::vector<PlanItem> fence;
-  const auto add = [&](int command, double param, double lon, double lat) {
+  const auto add = [&](int command, double param, const kit::Point2& lonlat) {
     PlanItem item{command};
     item.params[0] = param;
-    item.params[4] = rounded(lat, decimals.degrees);
-    item.params[5] = rounded(lon, decimals.degrees);
+    item.params[4] = rounded(lonlat[1], decimals.degrees);
+    item.params[5] = rounded(lonlat[0], decimals.degrees);
     fence.push_back(item);
   };
   const auto add_ring = [&](const kit::Ring& ring, bool keep_in) {
     const int command = keep_in ? Command::kFencePolygonIn : Command::kFencePolygonOut;
-    for (const auto& [lon, lat] : ring) {
-      add(command, double(ring.size()), lon, lat);
+    for (const kit::Point2& corner : ring) {
+      add(command, double(ring.size()), corner);
     }
   };
-  for (const MissionZone& zone : zones) {
-    if (zone.polygon.outline.empty()) {
-      add(zone.keep_in ? Command::kFenceCircleIn : Command::kFenceCircleOut,
-          rounded(zone.radius_m, decimals.metres), zone.centre[0], zone.centre[1]);
-      continue;
-    }
-    add_ring(zone.polygon.outline, zone.keep_in);
-    if (zone.keep_in) {
-      for (const kit::Ring& hole : zone.polygon.holes) {
-        add_ring(hole, false);
+  for (const kit::Zone& zone : zones) {
+    const kit::ZoneVolume& volume = zone.volumes.front();
+    const std::size_t first = fence.size();
+    if (volume.polygon.outline.empty()) {
+      add(zone.keeps_in() ? Command::kFenceCircleIn : Command::kFenceCircleOut,
+          rounded(volume.radius_m, decimals.metres), volume.centre);
+    } else {
+      add_ring(volume.polygon.outline, zone.keeps_in());
+      for (const kit::Ring& hole : volume.polygon.holes) {
+        if (zone.keeps_in()) {
+          add_ring(hole, false);
+        }
       }
     }
+    fence[first].name = zone.name;
   }
   return fence;
 }

@@ -35,6 +35,7 @@ struct PlanItem {
   /// Latitude and longitude in degrees and an altitude come last; NaN: left to the autopilot.
   std::array<double, 7> params{};
   bool continues = true;
+  std::string name{};  ///< of a fence's zone, at its first corner or its circle
 };
 
 /// What a vehicle is given: its mission, its fence and its rally points.

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "altiplan/check.hpp"
-#include "host/judge/judge.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -25,12 +24,13 @@ Leg leg_between(const Route& route, std::size_t a, std::size_t b) {
 /// The remaining points of the route, and which of them cannot currently be dropped.
 class Thinning {
  public:
-  Thinning(const Route& route, const Request& request, const std::vector<Goal>& via)
-      : route_(route), request_(request), left_(route.size()), stuck_(route.size(), false) {
+  Thinning(const Route& route, const Request& request, const std::vector<std::size_t>& via)
+      : route_(route),
+        request_(request),
+        left_(route.size()),
+        stuck_(route.size(), false),
+        fixed_(via) {
     std::iota(left_.begin(), left_.end(), std::size_t{0});
-    for (const std::size_t n : via_indices(route, via)) {
-      fixed_.push_back(n);
-    }
     for (std::size_t i = 0; i < route.leg_count(); ++i) {
       if (route.leg(i).turns()) {
         fixed_.insert(fixed_.end(), {i, i + 1});
@@ -38,8 +38,8 @@ class Thinning {
     }
   }
 
-  std::vector<std::size_t> down_to(std::size_t most) {
-    while (left_.size() > most) {
+  std::vector<std::size_t> down_to(std::size_t max_points) {
+    while (left_.size() > max_points) {
       const std::size_t k = nearest_to_line();
       if (k == 0) {
         break;
@@ -64,14 +64,14 @@ class Thinning {
   /// Index in left_ of the point to try next; 0 if none.
   std::size_t nearest_to_line() const {
     std::size_t best = 0;
-    double least = kInfinity;
+    double min_off = kInfinity;
     for (std::size_t k = 1; k + 1 < left_.size(); ++k) {
       const bool fixed = std::find(fixed_.begin(), fixed_.end(), left_[k]) != fixed_.end();
       if (fixed || stuck_[left_[k]]) {
         continue;
       }
-      if (const double off = off_line(at(k - 1), at(k), at(k + 1)); off < least) {
-        least = off;
+      if (const double off = off_line(at(k - 1), at(k), at(k + 1)); off < min_off) {
+        min_off = off;
         best = k;
       }
     }
@@ -107,9 +107,9 @@ class Thinning {
 };
 }  // namespace
 
-std::vector<std::size_t> thinned(const Route& route, std::size_t most, const Request& request,
-                                 const std::vector<Goal>& via) {
-  return Thinning(route, request, via).down_to(most);
+std::vector<std::size_t> thinned(const Route& route, std::size_t max_points, const Request& request,
+                                 const std::vector<std::size_t>& via) {
+  return Thinning(route, request, via).down_to(max_points);
 }
 
 Route part_of(const Route& route, const std::vector<std::size_t>& kept) {

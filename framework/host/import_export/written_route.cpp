@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/judge/judge.hpp"
-
 namespace altiplan::host {
 namespace {
 
@@ -60,9 +58,9 @@ Polyline corners_of(const Leg& turn, double tolerance) {
 
 class Writing {
  public:
-  Writing(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
+  Writing(const Route& route, const ArcForm& form, const std::vector<std::size_t>& via,
           const Request& request)
-      : route_(route), form_(form), request_(request), via_(via_indices(route, via)) {}
+      : route_(route), form_(form), request_(request), via_(via) {}
 
   WrittenRoute written() {
     add(route_.front(), false);
@@ -190,7 +188,7 @@ class Writing {
   const Route& route_;
   const ArcForm& form_;
   const Request& request_;
-  std::vector<std::size_t> via_;  ///< waypoints at via points
+  const std::vector<std::size_t>& via_;
   WrittenRoute result_;
   std::vector<bool> kept_;  ///< one for each place; false: a joint
 };
@@ -207,8 +205,8 @@ Vec3 corner_of(const Leg& piece) {
   return corner;
 }
 
-WrittenRoute written_route(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
-                           const Request& request) {
+WrittenRoute written_route(const Route& route, const ArcForm& form,
+                           const std::vector<std::size_t>& via, const Request& request) {
   return Writing(route, form, via, request).written();
 }
 }  // namespace altiplan::host

@@ -30,9 +30,9 @@ Vec3 corner_of(const Leg& piece);
 
 /// Points stand outside a turn, so that the legs between them touch it: they have its headings, and
 /// corners of its radius fit into them. Waypoints of a turn are left out where the legs on both
-/// sides pass through them, unless they are at a via point. Where turns may be circles, so are the
+/// sides pass through them, unless they are among `via`. Where turns may be circles, so are the
 /// loiters of start and goal: the goal's follows the last waypoint, the start's takes the place of
 /// the first one if it is left along a straight leg.
-WrittenRoute written_route(const Route& route, const ArcForm& form, const std::vector<Goal>& via,
-                           const Request& request);
+WrittenRoute written_route(const Route& route, const ArcForm& form,
+                           const std::vector<std::size_t>& via, const Request& request);
 }  // namespace altiplan::host

@@ -79,8 +79,8 @@ std::string mismatch(const Manifest& plugin) {
 /// Adds the record to the library; throws ElfError if it is invalid.
 void take_record(const Manifest& record, Library& library) {
   if (!ends_with_nul(record.api_hash) || !ends_with_nul(record.compiler) ||
-      !ends_with_nul(record.kind) || !ends_with_nul(record.name) || !ends_with_nul(record.sentence) ||
-      !ends_with_nul(record.file)) {
+      !ends_with_nul(record.kind) || !ends_with_nul(record.name) ||
+      !ends_with_nul(record.sentence) || !ends_with_nul(record.file)) {
     throw ElfError("damaged manifest: an unterminated text");
   }
   if (std::find(kKinds.begin(), kKinds.end(), record.kind) == kKinds.end()) {

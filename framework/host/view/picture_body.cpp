@@ -18,7 +18,7 @@ std::string seen_from_above(const std::vector<float>& corners, const Eigen::Isom
     }
     if ((p[1] - p[0]).cross(p[2] - p[0]).z() > 0) {
       for (std::size_t k = 0; k < 3; ++k) {
-        path += (k == 0 ? "M" : "L") + pixels(map.x(p[k].x())) + " " + pixels(map.y(p[k].y()));
+        path += (k == 0 ? "M" : "L") + kPen.at(map.x(p[k].x()), map.y(p[k].y()));
       }
       path += "Z";
     }
@@ -42,6 +42,6 @@ std::string closest_body(const Json& scene, const Json& result, std::string_view
   for (const Json& part : scene.at("body")) {
     path += seen_from_above(numbers<float>(part.at("triangles")), place, map);
   }
-  return "<path d=\"" + path + "\" fill=\"" + std::string(color) + "\"/>\n";
+  return kPen.path(path, attribute("fill", color));
 }
 }  // namespace altiplan::host::picture

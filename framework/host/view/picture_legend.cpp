@@ -54,7 +54,7 @@ class Legend {
     }
     svg_ += "<linearGradient id=\"heights\">" + stops + "</linearGradient>\n";
     svg_ += text_at(area_.left, y_ + 12, grouped(std::round(low)), kInk, 13);
-    svg_ += rectangle({area_.left + 60, y_, 180, 14}, "fill=\"url(#heights)\"");
+    svg_ += rectangle({area_.left + 60, y_, 180, 14}, " fill=\"url(#heights)\"");
     svg_ +=
         text_at(area_.left + 250, y_ + 12, grouped(std::round(high)) + " m above sea", kInk, 13);
     y_ += 2 * kLine;
@@ -84,8 +84,9 @@ class Legend {
       small(result.at("message").get<std::string>());
     }
     if (const Json& flight = result.at("flight"); !flight.is_null()) {
-      svg_ += "<path d=\"M" + pixels(area_.left) + " " + pixels(y_ + 6) + "h34\" stroke=\"" +
-              color + "\" stroke-width=\"2\" stroke-dasharray=\"5 4\"/>\n";
+      svg_ +=
+          kPen.path("M" + kPen.at(area_.left, y_ + 6) + "h34",
+                    attribute("stroke", color) + " stroke-width=\"2\" stroke-dasharray=\"5 4\"");
       small("flown: " + flight.at("message").get<std::string>());
     }
     y_ += kLine / 2;
@@ -97,10 +98,10 @@ class Legend {
                                                            {"keep_in", "Keep-in zone"},
                                                            {"threat", "Threat"}};
     const std::string color(role_color(role));
-    svg_ += rectangle({area_.left + 6, y_, 22, 14},
-                      "fill=\"" + (role == "keep_in" ? "none" : color) +
-                          "\" fill-opacity=\"0.3\" stroke=\"" + color + "\"" +
-                          (met ? " stroke-dasharray=\"4 3\"" : ""));
+    svg_ +=
+        rectangle({area_.left + 6, y_, 22, 14},
+                  attribute("fill", role == "keep_in" ? "none" : color) + " fill-opacity=\"0.3\"" +
+                      attribute("stroke", color) + (met ? " stroke-dasharray=\"4 3\"" : ""));
     svg_ += text_at(area_.left + 46, y_ + 12, kNames.at(role) + (met ? ", met in flight" : ""),
                     kInk, 13);
     y_ += kLine;

@@ -8,10 +8,8 @@
 namespace altiplan::host::picture {
 namespace {
 
-using namespace std::string_literals;
-
 std::string point(const Map& map, const Json& p) {
-  return pixels(map.x(p.at(0).get<double>())) + " " + pixels(map.y(p.at(1).get<double>()));
+  return kPen.at(map.x(p.at(0).get<double>()), map.y(p.at(1).get<double>()));
 }
 
 std::string ring(const Map& map, const Json& points) {
@@ -23,13 +21,12 @@ std::string ring(const Map& map, const Json& points) {
 }
 
 std::string box_path(const Map& map, double west, double south, double east, double north) {
-  return "M" + pixels(map.x(west)) + " " + pixels(map.y(south)) + "H" + pixels(map.x(east)) + "V" +
+  return "M" + kPen.at(map.x(west), map.y(south)) + "H" + pixels(map.x(east)) + "V" +
          pixels(map.y(north)) + "H" + pixels(map.x(west)) + "Z";
 }
 
-std::string circle(const Map& map, const Json& at, double radius, const std::string& more) {
-  return "<circle cx=\"" + pixels(map.x(at.at(0).get<double>())) + "\" cy=\"" +
-         pixels(map.y(at.at(1).get<double>())) + "\" r=\"" + pixels(radius) + "\" " + more + "/>\n";
+std::string circle(const Map& map, const Json& at, double radius, const std::string& paint) {
+  return kPen.circle(map.x(at.at(0).get<double>()), map.y(at.at(1).get<double>()), radius, paint);
 }
 
 /// Colour by role; dashed if the planner did not know of it at the start.
@@ -38,8 +35,9 @@ std::string look(const Json& thing) {
   const std::string color(role_color(role));
   const bool met = !thing.at("known").get<bool>() || !thing.at("added_by").is_null();
   // The vehicle must stay inside a keep-in zone: only its outline matters.
-  return "fill=\"" + (role == "keep_in" ? "none" : color) + "\" fill-opacity=\"0.3\" stroke=\"" +
-         color + "\" stroke-width=\"1.5\"" + (met ? " stroke-dasharray=\"6 4\"" : "");
+  return attribute("fill", role == "keep_in" ? "none" : color) + " fill-opacity=\"0.3\"" +
+         attribute("stroke", color) + " stroke-width=\"1.5\"" +
+         (met ? " stroke-dasharray=\"6 4\"" : "");
 }
 
 std::string solid(const Json& thing, const Map& map) {
@@ -60,7 +58,7 @@ std::string solid(const Json& thing, const Map& map) {
       path += ring(map, hole);
     }
   }
-  return "<path d=\"" + path + "\" fill-rule=\"evenodd\" " + look(thing) + "/>\n";
+  return kPen.path(path, " fill-rule=\"evenodd\"" + look(thing));
 }
 
 /// Many parts in one path; those identical from above only once.
@@ -69,8 +67,8 @@ std::string path_of(const std::set<std::string>& parts, const Json& thing) {
   for (const std::string& part : parts) {
     path += part;
   }
-  const std::string color(role_color(thing.at("role").get<std::string>()));
-  return "<path d=\"" + path + "\" fill=\"" + color + "\" fill-opacity=\"0.75\"/>\n";
+  return kPen.path(path, attribute("fill", role_color(thing.at("role").get<std::string>())) +
+                             " fill-opacity=\"0.75\"");
 }
 
 std::string boxes(const Json& thing, const Map& map) {
@@ -88,8 +86,7 @@ std::string mesh(const Json& thing, const Map& map) {
   for (std::size_t i = 0; i + 9 <= corners.size(); i += 9) {
     std::string part;
     for (std::size_t corner = i; corner < i + 9; corner += 3) {
-      part += (part.empty() ? "M" : "L") + pixels(map.x(corners[corner])) + " " +
-              pixels(map.y(corners[corner + 1]));
+      part += kPen.corner(part, map.x(corners[corner]), map.y(corners[corner + 1]));
     }
     parts.insert(part + "Z");
   }
@@ -113,20 +110,20 @@ std::string moving(const Json& thing, const Map& map) {
 
 /// A line through points whose coordinates begin at `first`, with a light edge.
 std::string polyline(const Map& map, const Json& points, std::size_t first, std::string_view color,
-                     const std::string& more) {
+                     const std::string& paint) {
   std::string path;
   std::string before;
   for (const Json& p : points) {
-    const std::string at = pixels(map.x(p.at(first).get<double>())) + " " +
-                           pixels(map.y(p.at(first + 1).get<double>()));
+    const std::string at =
+        kPen.at(map.x(p.at(first).get<double>()), map.y(p.at(first + 1).get<double>()));
     if (at != before) {
       path += (path.empty() ? "M" : "L") + at;
     }
     before = at;
   }
-  const std::string shape = "<path d=\"" + path + "\" stroke-linejoin=\"round\" stroke=\"";
-  return shape + "#ffffff\" stroke-width=\"5\" stroke-opacity=\"0.8\"/>\n" + shape +
-         std::string(color) + "\" " + more + "/>\n";
+  const std::string round = " stroke-linejoin=\"round\"";
+  return kPen.path(path, round + " stroke=\"#ffffff\" stroke-width=\"5\" stroke-opacity=\"0.8\"") +
+         kPen.path(path, round + attribute("stroke", color) + paint);
 }
 
 /// The names of marks, none cut by the map's edge or over another.
@@ -140,11 +137,8 @@ class Names {
         const Area area{x + right, y - kHigh / 2 + down, kWide, kHigh};
         if (is_free(area)) {
           taken_.push_back(area);
-          return "<g paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"4\" "
-                 "stroke-linejoin=\"round\">" +
-                 text_at(right > 0 ? area.left : area.right(), area.top + 13, text, kInk, 14,
-                         right > 0 ? Align::start : Align::end, true) +
-                 "</g>\n";
+          return over_all(text_at(right > 0 ? area.left : area.right(), area.top + 13, text, kInk,
+                                  14, right > 0 ? Align::start : Align::end, true));
         }
       }
     }
@@ -186,14 +180,14 @@ Area free_corner(const std::vector<Area>& areas, const Json& scene, const Map& m
 }
 
 std::string ends(const Json& scene, const Map& map) {
-  const std::string ink = "stroke=\""s + std::string(kInk) + "\" stroke-width=\"2\"";
+  const std::string ink = attribute("stroke", kInk) + " stroke-width=\"2\"";
   std::string svg;
   const auto goal_like = [&](const Json& goal, const std::string& fill) {
     const double tolerance = goal.at("tolerance").get<double>() * map.per_metre();
     svg += circle(map, goal.at("at"), tolerance, ink + " stroke-dasharray=\"2 3\"");
     const double x = map.x(goal.at("at").at(0).get<double>());
     const double y = map.y(goal.at("at").at(1).get<double>());
-    svg += rectangle({x - 6, y - 6, 12, 12}, ink + " fill=\"" + fill + "\"");
+    svg += rectangle({x - 6, y - 6, 12, 12}, ink + attribute("fill", fill));
     return std::array{x, y};
   };
   for (const Json& via : scene.at("via")) {
@@ -240,10 +234,10 @@ std::string routes(const Json& scene, const Map& map) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (const Json& flight = results[i].at("flight"); !flight.is_null()) {
       svg += polyline(map, flight.at("track"), 1, route_color(i),
-                      "stroke-width=\"2\" stroke-dasharray=\"5 4\"");
+                      " stroke-width=\"2\" stroke-dasharray=\"5 4\"");
     }
     if (const Json& route = results[i].at("route"); !route.is_null()) {
-      svg += polyline(map, route, 0, route_color(i), "stroke-width=\"3\"");
+      svg += polyline(map, route, 0, route_color(i), " stroke-width=\"3\"");
     }
     svg += closest_body(scene, results[i], route_color(i), map);
   }
@@ -261,9 +255,9 @@ std::string scale_and_north(const Json& scene, const Map& map) {
                                 {right - length - 16, bottom - 36, length + 16, 36},
                                 {area.left + kMargin, area.top + kMargin, length + 16, 36}},
                                scene, map);
-  std::string svg = rectangle(bar, "fill=\"#ffffff\" fill-opacity=\"0.85\" rx=\"4\"");
-  svg += "<path d=\"M" + pixels(bar.left + 8) + " " + pixels(bar.bottom() - 16) + "v6h" +
-         pixels(length) + "v-6\" stroke=\"#1a2027\" stroke-width=\"1.5\"/>\n";
+  std::string svg = rectangle(bar, " fill=\"#ffffff\" fill-opacity=\"0.85\" rx=\"4\"");
+  svg += kPen.path("M" + kPen.at(bar.left + 8, bar.bottom() - 16) + "v6h" + pixels(length) + "v-6",
+                   attribute("stroke", kInk) + " stroke-width=\"1.5\"");
   svg += text_at(bar.left + bar.width / 2, bar.bottom() - 19,
                  metres >= 1000 ? grouped(metres / 1000) + " km" : grouped(metres) + " m", kInk, 12,
                  Align::middle);
@@ -274,8 +268,8 @@ std::string scale_and_north(const Json& scene, const Map& map) {
   const double x = rose.left + 20;
   const double top = rose.top + 4;
   svg += "<circle cx=\"" + pixels(x) + "\" cy=\"" + pixels(rose.top + 20) +
-         "\" r=\"20\" fill=\"#ffffff\" fill-opacity=\"0.85\"/>\n<path d=\"M" + pixels(x) + " " +
-         pixels(top + 11) + "l6 19h-12z\" fill=\"#d55e00\"/>\n";
+         "\" r=\"20\" fill=\"#ffffff\" fill-opacity=\"0.85\"/>\n" +
+         kPen.path("M" + kPen.at(x, top + 11) + "l6 19h-12z", " fill=\"#d55e00\"");
   return svg + text_at(x, top + 8, "N", kInk, 13, Align::middle, true);
 }
 }  // namespace altiplan::host::picture

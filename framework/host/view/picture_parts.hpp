@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/base/base64.hpp"
+#include "host/base/svg.hpp"
 #include "host/base/xml_text.hpp"
 #include "host/result/result_json.hpp"
 #include "host/view/series_colors.hpp"
@@ -37,8 +38,10 @@ inline std::string_view role_color(std::string_view role) {
 /// Unknown space would hide everything else, and is not drawn.
 inline bool is_drawn(const Json& thing) { return thing.at("role") != "unknown"; }
 
-/// Formats to tenths of a pixel.
-std::string pixels(double value);
+inline constexpr SvgPen kPen{false};
+inline std::string pixels(double value) { return kPen.pixels(value); }
+/// The beginning of a picture that is so large; `more` are attributes.
+std::string open_svg(double width, double height, const std::string& more = "");
 
 struct Area {
   double left = 0;
@@ -54,7 +57,12 @@ std::string text_at(double x, double y, std::string_view text, std::string_view 
                     int size = 14, Align align = Align::start, bool bold = false);
 std::string line(double x0, double y0, double x1, double y1, std::string_view color,
                  double width = 1);
-std::string rectangle(const Area& area, std::string_view more);
+/// Its paint are attributes, each after a blank.
+inline std::string rectangle(const Area& area, const std::string& paint) {
+  return kPen.rectangle(area.left, area.top, area.width, area.height, paint);
+}
+/// Text with a light edge, over anything.
+std::string over_all(const std::string& text);
 
 /// The round number (1, 2 or 5 times a power of ten) that divides `length` into about `steps`
 /// steps.

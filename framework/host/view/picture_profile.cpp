@@ -78,8 +78,8 @@ class Chart {
     for (std::size_t i = 0; i < profile.at("s").size(); ++i) {
       const Json& z = profile.at(key)[i];
       if (z.is_number()) {
-        path += (pen_down ? "L" : "M") + pixels(x(profile.at("s")[i].get<double>())) + " " +
-                pixels(y(z.get<double>()));
+        path += (pen_down ? "L" : "M") +
+                kPen.at(x(profile.at("s")[i].get<double>()), y(z.get<double>()));
       }
       pen_down = z.is_number();
     }
@@ -100,17 +100,17 @@ class Chart {
           const double low = std::max(span[0].get<double>(), low_);
           const double high = std::min(span[1].get<double>(), high_);
           if (low < high) {
-            path +=
-                "M" + pixels(x(s[i].get<double>())) + " " + pixels(y(low)) + "V" + pixels(y(high));
+            path += "M" + kPen.at(x(s[i].get<double>()), y(low)) + "V" + pixels(y(high));
             widest = std::max(widest, gap(s, i));
           }
         }
       }
-      svg += path.empty() ? ""
-                          : "<path d=\"" + path + "\" stroke=\"" +
-                                std::string(role_color(role_of(layer, scene))) +
-                                "\" stroke-opacity=\"" + grouped(opacity) + "\" stroke-width=\"" +
-                                pixels(widest / longest_ * area_.width) + "\"/>\n";
+      if (!path.empty()) {
+        svg +=
+            kPen.path(path, attribute("stroke", role_color(role_of(layer, scene))) +
+                                attribute("stroke-opacity", grouped(opacity)) +
+                                attribute("stroke-width", pixels(widest / longest_ * area_.width)));
+      }
     }
     return svg;
   }
@@ -175,9 +175,9 @@ std::string heights(const Json& scene, const Area& area) {
             ? ""
             : "; pale: ≤ " + grouped(std::round(first.at("beside_m").get<double>())) + " m beside";
     svg += beside + solids +
-           (limits.empty() ? ""
-                           : "<path d=\"" + limits + "\" stroke=\"" + std::string(kFaint) +
-                                 "\" stroke-dasharray=\"5 4\"/>\n");
+           (limits.empty()
+                ? ""
+                : kPen.path(limits, attribute("stroke", kFaint) + " stroke-dasharray=\"5 4\""));
   }
   svg += text_at(area.left, area.top + 8, caption, kFaint, 12);
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -188,11 +188,12 @@ std::string heights(const Json& scene, const Area& area) {
     const std::string color(route_color(i));
     const std::string ground = chart.curve(profile, "ground");
     if (!ground.empty()) {
-      svg += "<path d=\"" + ground + "\" stroke=\"" + (i == 0 ? "#8a8378" : color) +
-             "\" stroke-width=\"" + (i == 0 ? "1.5" : "0.8") + "\"/>\n";
+      svg += kPen.path(ground, attribute("stroke", i == 0 ? "#8a8378" : color) +
+                                   attribute("stroke-width", i == 0 ? "1.5" : "0.8"));
     }
-    svg += "<path d=\"" + chart.curve(profile, "altitude") + "\" stroke=\"" + color +
-           "\" stroke-width=\"2.5\" stroke-linejoin=\"round\"/>\n";
+    svg +=
+        kPen.path(chart.curve(profile, "altitude"),
+                  attribute("stroke", color) + " stroke-width=\"2.5\" stroke-linejoin=\"round\"");
   }
   return svg;
 }
@@ -207,8 +208,9 @@ std::string clearances(const Json& results, const Area& area) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Json& profile = results[i].at("profile");
     if (!profile.is_null()) {
-      svg += "<path d=\"" + chart.curve(profile, "clearance") + "\" stroke=\"" +
-             std::string(route_color(i)) + "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n";
+      svg += kPen.path(
+          chart.curve(profile, "clearance"),
+          attribute("stroke", route_color(i)) + " stroke-width=\"2\" stroke-linejoin=\"round\"");
     }
   }
   return svg;

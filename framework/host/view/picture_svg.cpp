@@ -11,33 +11,30 @@
 namespace altiplan::host {
 namespace picture {
 
-std::string pixels(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
+std::string open_svg(double width, double height, const std::string& more) {
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + more +
+         attribute("viewBox", "0 0 " + kPen.at(width, height)) +
+         " fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n";
 }
 
 std::string text_at(double x, double y, std::string_view text, std::string_view color, int size,
                     Align align, bool bold) {
-  std::string out = "<text x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\" fill=\"";
-  out += color;
-  out += "\" font-size=\"" + std::to_string(size) + "\"";
-  out += align == Align::middle ? " text-anchor=\"middle\""
-         : align == Align::end  ? " text-anchor=\"end\""
-                                : "";
-  out += bold ? " font-weight=\"600\">" : ">";
-  return out + xml_text(text) + "</text>\n";
+  std::string paint = attribute("fill", color) + attribute("font-size", std::to_string(size));
+  paint += align == Align::middle ? attribute("text-anchor", "middle")
+           : align == Align::end  ? attribute("text-anchor", "end")
+                                  : "";
+  return kPen.text(x, y, xml_text(text), paint + (bold ? attribute("font-weight", "600") : ""));
 }
 
 std::string line(double x0, double y0, double x1, double y1, std::string_view color, double width) {
-  return "<path d=\"M" + pixels(x0) + " " + pixels(y0) + "L" + pixels(x1) + " " + pixels(y1) +
-         "\" stroke=\"" + std::string(color) + "\" stroke-width=\"" + pixels(width) + "\"/>\n";
+  return kPen.line(x0, y0, x1, y1,
+                   attribute("stroke", color) + attribute("stroke-width", pixels(width)));
 }
 
-std::string rectangle(const Area& area, std::string_view more) {
-  return "<rect x=\"" + pixels(area.left) + "\" y=\"" + pixels(area.top) + "\" width=\"" +
-         pixels(area.width) + "\" height=\"" + pixels(area.height) + "\" " + std::string(more) +
-         "/>\n";
+std::string over_all(const std::string& text) {
+  return "<g paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"4\" "
+         "stroke-linejoin=\"round\">" +
+         text + "</g>\n";
 }
 
 double round_step(double length, double steps) {
@@ -106,18 +103,16 @@ std::string picture_svg(const Json& scene) {
   const double bottom = std::max(map.area().bottom(), room.top + kMinMap);
   const double height = bottom + below + kMargin;
   const std::string title = scene.at("title").get<std::string>();
-  const std::string size = "width=\"" + pixels(kWidth) + "\" height=\"" + pixels(height) + "\"";
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" " + size + " viewBox=\"0 0 " +
-                    pixels(kWidth) + " " + pixels(height) +
-                    "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n";
+  std::string svg = open_svg(
+      kWidth, height, attribute("width", pixels(kWidth)) + attribute("height", pixels(height)));
   svg += "<title>" + xml_text(title) + "</title>\n";
-  svg += rectangle({0, 0, kWidth, height}, "fill=\"" + std::string(kPaper) + "\"");
+  svg += rectangle({0, 0, kWidth, height}, attribute("fill", kPaper));
   svg += text_at(kMargin, kMargin + 16, title, kInk, 20, Align::start, true);
-  svg += "<clipPath id=\"map\">" + rectangle(map.area(), "") + "</clipPath>\n";
-  svg += rectangle(map.area(), "fill=\"#eef1f4\"");
+  svg += "<clipPath id=\"map\">" + rectangle(map.area(), " ") + "</clipPath>\n";
+  svg += rectangle(map.area(), " fill=\"#eef1f4\"");
   svg += "<g clip-path=\"url(#map)\">\n";
   svg += relief(scene, map) + solids(scene, map) + routes(scene, map);
-  svg += "</g>\n" + rectangle(map.area(), "stroke=\"#5b6672\"") + scale_and_north(scene, map);
+  svg += "</g>\n" + rectangle(map.area(), " stroke=\"#5b6672\"") + scale_and_north(scene, map);
   svg += legend(scene, {map.area().right() + kMargin, room.top, kLegend, bottom - room.top});
   if (below > 0) {
     svg += profiles(scene, {kMargin, bottom + 12, kWidth - 2 * kMargin, below - 12});
@@ -133,8 +128,6 @@ std::string profile_svg(const Route& route, const Request& request) {
   const Json scene{{"results", {{{"profile", route_profile(route, request, {kSamples})}}}},
                    {"ground", ground}};
   const double height = kProfile + kMargin;
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + pixels(kWidth) + " " +
-         pixels(height) + "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n" +
-         profiles(scene, {0, kMargin, kWidth, kProfile}) + "</svg>\n";
+  return open_svg(kWidth, height) + profiles(scene, {0, kMargin, kWidth, kProfile}) + "</svg>\n";
 }
 }  // namespace altiplan::host

@@ -11,7 +11,7 @@ namespace {
 
 /// The route with room around it.
 Box shown_box(const Route& route) {
-  constexpr double kLeast = 300;  // metres
+  constexpr double kMinMargin = 300;  // metres
   Box box = Box::empty();
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     for (const Vec3& p : route.leg(i).chords(1)) {
@@ -19,7 +19,7 @@ Box shown_box(const Route& route) {
     }
   }
   box = box.united(Box{route.front(), route.front()});
-  return box.grown(std::max(kLeast, (box.max - box.min).norm() * 0.1));
+  return box.grown(std::max(kMinMargin, (box.max - box.min).norm() * 0.1));
 }
 
 bool is_beside(const Json& outline, const Box& box) {
@@ -65,10 +65,7 @@ std::string labelled(const Route& route, const std::vector<std::string>& labels,
     });
     if (is_free && i < labels.size()) {
       placed.push_back({x, y});
-      svg +=
-          "<g paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"4\" "
-          "stroke-linejoin=\"round\">" +
-          text_at(x + 6, y - 6, labels[i], kInk, 14, Align::start, true) + "</g>\n";
+      svg += over_all(text_at(x + 6, y - 6, labels[i], kInk, 14, Align::start, true));
     }
   }
   return svg;
@@ -104,11 +101,8 @@ std::string map_svg(const Route& route, const std::vector<std::string>& labels,
   drop_what_is_beside(scene, box);
   const Map map(scene.at("box"), {0, 0, kWidth, kMaxHeight});
   const Area& area = map.area();
-  const std::string size = pixels(area.width) + " " + pixels(area.height);
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + size +
-         "\" fill=\"none\" font-family=\"'DejaVu Sans', Verdana, sans-serif\">\n" +
-         rectangle(area, "fill=\"#eef1f4\"") + relief(scene, map) + solids(scene, map) +
-         picture::routes(scene, map) + labelled(route, labels, map) + scale_and_north(scene, map) +
-         "</svg>\n";
+  return open_svg(area.width, area.height) + rectangle(area, " fill=\"#eef1f4\"") +
+         relief(scene, map) + solids(scene, map) + picture::routes(scene, map) +
+         labelled(route, labels, map) + scale_and_north(scene, map) + "</svg>\n";
 }
 }  // namespace altiplan::host

@@ -305,9 +305,9 @@ Box scene_box(const Mission& mission, const std::vector<StoredResult>& results) 
       box = box.with(p);
     }
   }
-  const double least = std::max(kMinEdge, kMinShare * (box.max - box.min).maxCoeff());
+  const double min_side = std::max(kMinEdge, kMinShare * (box.max - box.min).maxCoeff());
   for (int axis = 0; axis < 3; ++axis) {
-    const double missing = std::max(0.0, least - (box.max[axis] - box.min[axis]));
+    const double missing = std::max(0.0, min_side - (box.max[axis] - box.min[axis]));
     box.min[axis] -= missing / 2;
     box.max[axis] += missing / 2;
   }

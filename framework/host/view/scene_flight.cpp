@@ -47,16 +47,17 @@ double bend(const Track& track, std::size_t i) {
   return (p - (a + share * (b - a))).norm();
 }
 
-/// The track points to show: all in `must`; of the remainder up to `most`, half evenly spaced, half
-/// where the track bends most.
-std::set<std::size_t> thinned(const Track& track, std::set<std::size_t> must, std::size_t most) {
-  if (track.size() <= most) {
+/// The track points to show: all in `must`; of the remainder up to `max_points`, half evenly
+/// spaced, half where the track bends most.
+std::set<std::size_t> thinned(const Track& track, std::set<std::size_t> must,
+                              std::size_t max_points) {
+  if (track.size() <= max_points) {
     for (std::size_t i = 0; i < track.size(); ++i) {
       must.insert(must.end(), i);
     }
     return must;
   }
-  const std::size_t spare = most - std::min(most, must.size());
+  const std::size_t spare = max_points - std::min(max_points, must.size());
   std::vector<std::size_t> bends;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
     bends.push_back(i);
@@ -109,13 +110,14 @@ class TruthAlong {
   std::map<std::string, double> clearance(double time_s, const Vec3& p) const {
     std::map<std::string, double> each = clearances(world_.truth(), p);
     for (const MovingObstacle& moving : world_.truth().moving()) {
-      double& least = each.try_emplace("moving", kInfinity).first->second;
-      least = std::min(least, signed_distance(moving.at(time_s), p));
+      double& min_distance = each.try_emplace("moving", kInfinity).first->second;
+      min_distance = std::min(min_distance, signed_distance(moving.at(time_s), p));
     }
     return each;
   }
-  double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const {
-    return world_.separation_below(least, a, t0, b, t1);
+  double separation_below(double min_distance, const Vec3& a, double t0, const Vec3& b,
+                          double t1) const {
+    return world_.separation_below(min_distance, a, t0, b, t1);
   }
   void flown(const Vec3& a, double t0, const Vec3& b, double t1) { world_.flown(a, t0, b, t1); }
   NearestLeg separation() { return world_.separation(); }
@@ -154,8 +156,8 @@ TrackPlace nearest_place(const Track& track, TruthAlong truth) {
     truth.go_to(i);
     truth.flown(track[i].second, track[i].first, track[i + 1].second, track[i + 1].first);
   }
-  const auto [leg, least] = truth.separation();
-  if (least == kInfinity) {
+  const auto [leg, min_distance] = truth.separation();
+  if (min_distance == kInfinity) {
     return {0, 0};
   }
   there.go_to(leg);
@@ -165,7 +167,7 @@ TrackPlace nearest_place(const Track& track, TruthAlong truth) {
     const double middle = (from + to) / 2;
     const auto [t0, a] = at(track, {leg, from});
     const auto [t1, b] = at(track, {leg, middle});
-    const double met = least + kLengthTolerance;
+    const double met = min_distance + kLengthTolerance;
     (there.separation_below(met, a, t0, b, t1) < met ? to : from) = middle;
   }
   return to == 1 ? TrackPlace{leg + 1, 0} : TrackPlace{leg, from};

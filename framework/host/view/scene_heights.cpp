@@ -183,11 +183,11 @@ void SolidProfile::write(Json& profile) const {
 }
 
 SolidProfile solid_profile(const Json& profile, const Box& volume) {
-  constexpr double kMostBeside = 25;     // metres
+  constexpr double kMaxBeside = 25;      // metres
   constexpr double kBesideShare = 0.02;  // of the volume's longer side
   const Vec3 size = volume.max - volume.min;
   return {shown_heights(profile, volume),
-          std::min(kMostBeside, kBesideShare * std::max(size.x(), size.y()))};
+          std::min(kMaxBeside, kBesideShare * std::max(size.x(), size.y()))};
 }
 
 void add_heights(Json& profile, const Request& request) {

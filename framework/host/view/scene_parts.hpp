@@ -79,13 +79,10 @@ std::map<std::string, double> clearances(const World& world, const Vec3& p);
 class ClearanceProfile {
  public:
   void add(const std::map<std::string, double>& each);
-  /// The minimum of the last clearances added.
-  double least() const { return least_; }
   void write(Json& profile) const;
 
  private:
   std::size_t count_ = 0;
-  double least_ = kInfinity;
   Json clearance_ = Json::array();
   Json to_ = Json::object();
 };

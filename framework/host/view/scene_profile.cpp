@@ -87,9 +87,9 @@ std::vector<std::optional<double>> turns_of(const Route& route, bool turns_on_th
 
 /// The waypoints, those places, and evenly spaced others up to the sample limit.
 std::vector<Sample> samples_of(const Route& route, const std::vector<LegPlace>& places,
-                               std::size_t most, bool turns_on_the_spot) {
+                               std::size_t max_samples, bool turns_on_the_spot) {
   const double total = length(route);
-  const std::size_t spare = most - std::min(most, route.size() + places.size());
+  const std::size_t spare = max_samples - std::min(max_samples, route.size() + places.size());
   const double step = spare > 0 ? total / double(spare) : kInfinity;
   const auto turns = turns_of(route, turns_on_the_spot);
   std::vector<Sample> samples;
@@ -127,25 +127,25 @@ std::vector<Sample> samples_of(const Route& route, const std::vector<LegPlace>& 
 std::map<std::string, double> clearances(const World& world, const Vec3& p) {
   std::map<std::string, double> each;
   for (const Layer& layer : world.layers()) {
-    double& least = each.try_emplace(layer.plugin, kInfinity).first->second;
-    if (layer.environment->clearance(p) < least) {
-      least = std::min(least, place_clearance(*layer.environment, p));
+    double& min_clearance = each.try_emplace(layer.plugin, kInfinity).first->second;
+    if (layer.environment->clearance(p) < min_clearance) {
+      min_clearance = std::min(min_clearance, place_clearance(*layer.environment, p));
     }
   }
   return each;
 }
 
 void ClearanceProfile::add(const std::map<std::string, double>& each) {
-  least_ = kInfinity;
+  double min_clearance = kInfinity;
   for (const auto& [kind, clearance] : each) {
     Json& values = to_[kind];
     while (values.size() < count_) {
       values.push_back(nullptr);
     }
     values.push_back(rounded(clearance));
-    least_ = std::min(least_, clearance);
+    min_clearance = std::min(min_clearance, clearance);
   }
-  clearance_.push_back(rounded(least_));
+  clearance_.push_back(rounded(min_clearance));
   ++count_;
   for (Json& values : to_) {
     if (values.size() < count_) {

@@ -36,11 +36,11 @@ struct Event {
   float alive = -1;
 };
 
-/// Keeps every n-th event of each step, n the smallest power of two that keeps at most `most`;
-/// events that continue the previous one are kept or dropped with it.
+/// Keeps every n-th event of each step, n the smallest power of two that keeps at most
+/// `max_events`; events that continue the previous one are kept or dropped with it.
 class Thinned {
  public:
-  explicit Thinned(std::size_t most) : most_(most) {}
+  explicit Thinned(std::size_t max_events) : max_events_(max_events) {}
 
   void add(Event event, bool goes_on) {
     std::size_t& count = counts_[event.step];
@@ -51,7 +51,7 @@ class Thinned {
       kept_.push_back(event);
     }
     // If n exceeds all counts, only the first is left; it stays, however long it is.
-    while (kept_.size() > most_ && every_ <= greatest_) {
+    while (kept_.size() > max_events_ && every_ <= greatest_) {
       every_ *= 2;
       kept_.erase(std::remove_if(kept_.begin(), kept_.end(),
                                  [&](const Event& old) { return old.nth % every_ != 0; }),
@@ -61,7 +61,7 @@ class Thinned {
   const std::vector<Event>& kept() const { return kept_; }
 
  private:
-  std::size_t most_;
+  std::size_t max_events_;
   std::size_t every_ = 1;
   std::size_t greatest_ = 0;
   std::array<std::size_t, kMaxSteps> counts_{};

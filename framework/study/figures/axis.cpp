@@ -46,8 +46,8 @@ Axis Axis::around(const std::vector<double>& values, double from, double to) {
     const double margin = std::pow(high / low, 0.03);
     return {std::max(low / margin, kMin), std::min(high * margin, kGreatest), true, from, to};
   }
-  const double least = std::max(std::abs(low), std::abs(high)) * 1e-6;
-  double margin = std::max((high - low) * 0.04, least);
+  const double min_margin = std::max(std::abs(low), std::abs(high)) * 1e-6;
+  double margin = std::max((high - low) * 0.04, min_margin);
   margin = margin > 0 ? margin : 1;
   return {std::max(low - margin, -kGreatest), std::min(high + margin, kGreatest), false, from, to};
 }

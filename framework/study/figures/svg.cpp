@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "host/base/svg.hpp"
 #include "host/view/series_colors.hpp"
 #include "study/figures/text.hpp"
 
 namespace altiplan::study::report {
 namespace {
 
+using host::attribute;
 using host::kSeriesColors;
 constexpr std::array<const char*, 4> kDashes{"", "6 3", "2 2.5", "8 3 2 3"};
 
@@ -44,19 +45,11 @@ const OutcomeLook& outcome_look(std::string_view outcome) {
   return found == kLooks.end() ? kOther : found->second;
 }
 
-std::string attribute(const char* name, std::string_view value) {
-  return std::string(" ") + name + "=\"" + std::string(value) + "\"";
-}
-
-std::string tipped(const std::string& open, const std::string& close, const std::string& tip) {
-  return tip.empty() ? open + "/>\n" : open + "><title>" + html(tip) + "</title>" + close + "\n";
-}
+constexpr host::SvgPen kPen{true};
 
 /// The outline of the mark of a series.
 std::string mark_path(std::size_t series, double x, double y, double r) {
-  const auto at = [&](double dx, double dy) {
-    return pixels(x + dx * r) + " " + pixels(y + dy * r);
-  };
+  const auto at = [&](double dx, double dy) { return kPen.at(x + dx * r, y + dy * r); };
   switch (series % 6) {
     case 1:
       return "M" + at(-0.9, -0.9) + "L" + at(0.9, -0.9) + "L" + at(0.9, 0.9) + "L" + at(-0.9, 0.9) +
@@ -79,15 +72,7 @@ std::string mark_path(std::size_t series, double x, double y, double r) {
 }
 }  // namespace
 
-std::string pixels(double value) {
-  char text[32];
-  const int length = std::snprintf(text, sizeof text, "%.1f", value + 0.0);
-  std::string out(text, std::size_t(length));
-  if (out.ends_with(".0")) {
-    out.resize(out.size() - 2);
-  }
-  return out == "-0" ? "0" : out;
-}
+std::string pixels(double value) { return kPen.pixels(value); }
 
 std::string series_line(std::size_t series, double width) {
   const std::size_t color = series % kSeriesColors.size();
@@ -135,40 +120,32 @@ std::string outcome_patterns(const std::vector<std::string>& outcomes) {
 }
 
 void Canvas::text(double x, double y, std::string_view text, std::string_view kind, Anchor anchor) {
-  body_ += "<text x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\"" + attribute("class", kind) +
-           attribute("fill", kind == "quiet" ? kQuiet : kInk);
+  std::string paint = attribute("class", kind) + attribute("fill", kind == "quiet" ? kQuiet : kInk);
   if (kind == "strong") {
-    body_ += attribute("font-weight", "600");
+    paint += attribute("font-weight", "600");
   }
   if (anchor != Anchor::start) {
-    body_ += attribute("text-anchor", anchor == Anchor::end ? "end" : "middle");
+    paint += attribute("text-anchor", anchor == Anchor::end ? "end" : "middle");
   }
-  body_ += ">" + html(text) + "</text>\n";
+  body_ += kPen.text(x, y, html(text), paint);
 }
 
 void Canvas::line(double x0, double y0, double x1, double y1, std::string_view kind) {
-  body_ += "<path d=\"M" + pixels(x0) + " " + pixels(y0) + "L" + pixels(x1) + " " + pixels(y1) +
-           "\"" + attribute("class", kind) +
-           attribute("stroke", kind == "hair"         ? kHair
-                               : kind == "quiet_line" ? kQuiet
-                                                      : kInk) +
-           (kind == "reference" ? attribute("stroke-dasharray", "4 3") : "") + "/>\n";
+  const char* color = kind == "hair" ? kHair : kind == "quiet_line" ? kQuiet : kInk;
+  body_ += kPen.line(x0, y0, x1, y1,
+                     attribute("class", kind) + attribute("stroke", color) +
+                         (kind == "reference" ? attribute("stroke-dasharray", "4 3") : ""));
 }
 
 void Canvas::rectangle(double x, double y, double width, double height, const std::string& paint,
                        const std::string& tip) {
-  body_ += tipped("<rect x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\" width=\"" + pixels(width) +
-                      "\" height=\"" + pixels(height) + "\"" + paint,
-                  "</rect>", tip);
+  body_ += kPen.rectangle(x, y, width, height, paint, html(tip));
 }
 
-void Canvas::path(const std::string& d, const std::string& paint) {
-  body_ += "<path d=\"" + d + "\"" + paint + "/>\n";
-}
+void Canvas::path(const std::string& d, const std::string& paint) { body_ += kPen.path(d, paint); }
 
 void Canvas::mark(double x, double y, std::size_t series, double size, const std::string& tip) {
-  body_ += tipped("<path d=\"" + mark_path(series, x, y, size) + "\"" + series_fill(series),
-                  "</path>", tip);
+  body_ += kPen.path(mark_path(series, x, y, size), series_fill(series), html(tip));
 }
 
 void Canvas::point(double x, double y, std::size_t series, std::size_t run,
@@ -208,9 +185,8 @@ std::string figure_style() {
 }
 
 std::string svg_text(const Figure& figure, bool inlined) {
-  const std::string size = pixels(figure.width) + " " + pixels(figure.height);
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"figure\" viewBox=\"0 0 " +
-                    size +
+                    kPen.at(figure.width, figure.height) +
                     "\" role=\"img\" font-family=\"system-ui, 'DejaVu Sans', sans-serif\" "
                     "font-size=\"12.5\"";
   if (inlined) {

@@ -81,7 +81,7 @@ std::string html_row(const Table& table, std::size_t at) {
   return out;
 }
 
-std::string html_text(const Table& table, std::size_t most) {
+std::string html_text(const Table& table, std::size_t max_rows) {
   const std::string id = html(table.name);
   std::string out = "<p class=caption id=\"caption-" + id + "\">" + html(table.caption) +
                     "</p><div class=scroll><table id=\"table-" + id +
@@ -91,7 +91,7 @@ std::string html_text(const Table& table, std::size_t most) {
            "</th>";
   }
   out += "</tr></thead><tbody>\n";
-  for (std::size_t at = 0; at < std::min(most, table.rows.size()); ++at) {
+  for (std::size_t at = 0; at < std::min(max_rows, table.rows.size()); ++at) {
     out += "<tr>" + html_row(table, at) + "</tr>\n";
   }
   return out + "</tbody></table></div>\n";

@@ -44,8 +44,8 @@ std::string csv_text(const Grid& grid);
 std::string markdown_text(const Table& table);
 /// For LaTeX with the packages booktabs and textcomp.
 std::string latex_text(const Table& table);
-/// At most `most` rows; the script adds the others.
-std::string html_text(const Table& table, std::size_t most = std::size_t(-1));
+/// At most `max_rows` rows; the script adds the others.
+std::string html_text(const Table& table, std::size_t max_rows = std::size_t(-1));
 /// The cells of one row, <td>… .
 std::string html_row(const Table& table, std::size_t row);
 }  // namespace altiplan::study::report

@@ -109,9 +109,9 @@ std::size_t characters(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
 }
 
-std::string shortened(const std::string& text, std::size_t most) {
+std::string shortened(const std::string& text, std::size_t max_characters) {
   const std::size_t count = characters(text);
-  if (count <= most) {
+  if (count <= max_characters) {
     return text;
   }
   const auto first_bytes = [&](std::size_t wanted) {
@@ -122,8 +122,8 @@ std::string shortened(const std::string& text, std::size_t most) {
     }
     return at;
   };
-  const std::size_t head = most / 2;
-  const std::size_t tail = most - head - 1;
+  const std::size_t head = max_characters / 2;
+  const std::size_t tail = max_characters - head - 1;
   return text.substr(0, first_bytes(head)) + "…" + text.substr(first_bytes(count - tail));
 }
 

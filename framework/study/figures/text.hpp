@@ -32,7 +32,7 @@ std::string shell(std::string_view text);
 std::string slug(std::string_view text);
 
 /// Shortened to that many characters, with an ellipsis in the middle; for printable text.
-std::string shortened(const std::string& text, std::size_t most);
+std::string shortened(const std::string& text, std::size_t max_characters);
 /// Number of UTF-8 characters.
 std::size_t characters(std::string_view text);
 

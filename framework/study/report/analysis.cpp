@@ -49,23 +49,23 @@ std::vector<SuccessComparison> compare_success(const StudyData& data,
   std::vector<double> p;
   for (std::size_t against = 0; against < data.pipelines.size(); ++against) {
     for (std::size_t pipeline = against + 1; pipeline < data.pipelines.size(); ++pipeline) {
-      SuccessComparison made;
-      made.pipeline = pipeline;
-      made.against = against;
+      SuccessComparison comparison;
+      comparison.pipeline = pipeline;
+      comparison.against = against;
       PairedSample sample;
       for (const Pair& pair : pairs) {
         if (pair.rows[pipeline] != kNoRow && pair.rows[against] != kNoRow) {
           const bool solved = data.rows[pair.rows[pipeline]].solved();
           const bool other_solved = data.rows[pair.rows[against]].solved();
-          made.only_pipeline += solved && !other_solved;
-          made.only_against += other_solved && !solved;
+          comparison.only_pipeline += solved && !other_solved;
+          comparison.only_against += other_solved && !solved;
           sample.add(other_solved ? 1 : 0, solved ? 1 : 0, pair.scenario);
         }
       }
-      made.pairs = sample.size();
-      made.test = success_test(sample);
-      p.push_back(made.test.p);
-      all.push_back(made);
+      comparison.pairs = sample.size();
+      comparison.test = success_test(sample);
+      p.push_back(comparison.test.p);
+      all.push_back(comparison);
     }
   }
   const std::vector<double> adjusted = holm(p);
@@ -83,23 +83,23 @@ class MetricAnalyser {
         pairs_(pairs),
         column_(data.column(metric)),
         is_of_every_run_(is_of_every_run(metric)) {
-    made_.metric = metric;
-    made_.better = better(data, metric);
+    analysis_.metric = metric;
+    analysis_.better = better(data, metric);
   }
 
   MetricAnalysis operator()() {
     take_samples();
     compare_all();
     std::vector<double> p;
-    for (const Comparison& comparison : made_.comparisons) {
+    for (const Comparison& comparison : analysis_.comparisons) {
       p.push_back(comparison.p());
     }
     const std::vector<double> adjusted = holm(p);
     for (std::size_t at = 0; at < adjusted.size(); ++at) {
-      made_.comparisons[at].p_holm = adjusted[at];
+      analysis_.comparisons[at].p_holm = adjusted[at];
     }
     rank();
-    return std::move(made_);
+    return std::move(analysis_);
   }
 
  private:
@@ -114,19 +114,20 @@ class MetricAnalyser {
   }
 
   void take_samples() {
-    made_.samples.resize(data_.pipelines.size());
+    analysis_.samples.resize(data_.pipelines.size());
     for (std::size_t at = 0; at < data_.rows.size(); ++at) {
       if (const double found = value(at); !std::isnan(found)) {
-        Sample& sample = made_.samples[data_.rows[at].pipeline];
+        Sample& sample = analysis_.samples[data_.rows[at].pipeline];
         sample.values.push_back(found);
         sample.rows.push_back(at);
       }
     }
-    made_.is_ratio = true;
-    for (Sample& sample : made_.samples) {
+    analysis_.is_ratio = true;
+    for (Sample& sample : analysis_.samples) {
       sample.box = box_plot(sample.values);
-      made_.is_ratio = made_.is_ratio && std::all_of(sample.values.begin(), sample.values.end(),
-                                                     [](double value) { return value > 0; });
+      analysis_.is_ratio =
+          analysis_.is_ratio && std::all_of(sample.values.begin(), sample.values.end(),
+                                            [](double value) { return value > 0; });
     }
   }
 
@@ -139,11 +140,11 @@ class MetricAnalyser {
         all.emplace_back(a, b);
       }
     }
-    made_.comparisons.resize(all.size());
+    analysis_.comparisons.resize(all.size());
     std::atomic<std::size_t> next = 0;
     const auto work = [&] {
       for (std::size_t at = next++; at < all.size(); at = next++) {
-        made_.comparisons[at] = compare(all[at].first, all[at].second);
+        analysis_.comparisons[at] = compare(all[at].first, all[at].second);
       }
     };
     std::vector<std::jthread> others;
@@ -155,32 +156,32 @@ class MetricAnalyser {
   }
 
   Comparison compare(std::size_t against, std::size_t pipeline) const {
-    Comparison made;
-    made.pipeline = pipeline;
-    made.against = against;
+    Comparison comparison;
+    comparison.pipeline = pipeline;
+    comparison.against = against;
     PairedSample sample;
     for (const Pair& pair : pairs_) {
-      made.pairs += pair.rows[against] != kNoRow && pair.rows[pipeline] != kNoRow;
+      comparison.pairs += pair.rows[against] != kNoRow && pair.rows[pipeline] != kNoRow;
       const double x = value(pair.rows[against]);
       const double y = value(pair.rows[pipeline]);
       if (!std::isnan(x) && !std::isnan(y)) {
         sample.add(x, y, pair.scenario);
       }
     }
-    made.used = sample.size();
+    comparison.used = sample.size();
     const RandomStream stream =
         RandomStream(std::uint64_t(data_.file.seed))
-            .sub("report " + made_.metric + " " + data_.pipelines[against].name + " " +
+            .sub("report " + analysis_.metric + " " + data_.pipelines[against].name + " " +
                  data_.pipelines[pipeline].name);
-    made.effect = paired_effect(sample, made_.is_ratio, stream, kConfidence,
-                                resamples(pairs_.size(), data_.pipelines.size()));
-    return made;
+    comparison.effect = paired_effect(sample, analysis_.is_ratio, stream, kConfidence,
+                                      resamples(pairs_.size(), data_.pipelines.size()));
+    return comparison;
   }
 
   void rank() {
     const std::size_t count = data_.pipelines.size();
     if (count < 3) {
-      made_.why_no_ranking = "Ranks need three pipelines.";
+      analysis_.why_no_ranking = "Ranks need three pipelines.";
       return;
     }
     // One list per scenario and pipeline, of the pairs that all pipelines solved.
@@ -194,7 +195,7 @@ class MetricAnalyser {
         auto& lists = scenarios[pair.scenario];
         lists.resize(count);
         for (std::size_t p = 0; p < count; ++p) {
-          lists[p].push_back(made_.better == Better::lower ? values[p] : -values[p]);
+          lists[p].push_back(analysis_.better == Better::lower ? values[p] : -values[p]);
         }
       }
     }
@@ -215,14 +216,14 @@ class MetricAnalyser {
     const std::size_t blocks = treatments.front().size();
     const auto test = blocks < 2 ? std::nullopt : friedman(treatments);
     if (!test) {
-      made_.why_no_ranking =
+      analysis_.why_no_ranking =
           "Ranks need two scenarios or repetitions that all pipelines solved; found " +
           std::to_string(blocks) + ".";
       return;
     }
     const double critical =
         critical_difference(int(treatments.size()), std::int64_t(blocks), kAlpha);
-    made_.ranking =
+    analysis_.ranking =
         Ranking{blocks, of_scenarios, *test, critical, joined(test->average_ranks, critical)};
   }
 
@@ -230,7 +231,7 @@ class MetricAnalyser {
   const std::vector<Pair>& pairs_;
   std::size_t column_;
   bool is_of_every_run_;
-  MetricAnalysis made_;
+  MetricAnalysis analysis_;
 };
 }  // namespace
 
@@ -241,22 +242,22 @@ std::size_t resamples(std::size_t pairs, std::size_t pipelines) {
 }
 
 Analysis analyse(const StudyData& data, bool times) {
-  Analysis made;
+  Analysis analysis;
   const std::vector<Pair> pairs = pairs_of(data);
-  made.success = success_of(data);
-  made.success_comparisons = compare_success(data, pairs);
+  analysis.success = success_of(data);
+  analysis.success_comparisons = compare_success(data, pairs);
   std::set<std::string> files;  // of figures, named by their metric
   for (const std::string& metric : compared_metrics(data)) {
     if (!files.insert(slug(metric)).second) {
-      made.left_out.push_back(metric + " is listed twice.");
+      analysis.left_out.push_back(metric + " is listed twice.");
     } else if (data.column(metric) < data.columns.size()) {
-      made.metrics.push_back(MetricAnalyser(data, pairs, metric)());
+      analysis.metrics.push_back(MetricAnalyser(data, pairs, metric)());
     } else {
-      made.left_out.push_back(metric + (!times && varies(metric)
-                                            ? " is not compared: it varies between equal runs."
-                                            : " is not compared: no run has this value."));
+      analysis.left_out.push_back(metric + (!times && varies(metric)
+                                                ? " is not compared: it varies between equal runs."
+                                                : " is not compared: no run has this value."));
     }
   }
-  return made;
+  return analysis;
 }
 }  // namespace altiplan::study::report

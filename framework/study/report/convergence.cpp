@@ -58,14 +58,14 @@ double first(const Run& run, const Test& is_there) {
   return found == run.end() ? kInfinity : found->number;
 }
 
-void add_curves(Convergence& made, const std::vector<Run>& runs) {
-  made.iterations = numbers_of(runs);
-  for (const double number : made.iterations) {
+void add_curves(Convergence& convergence, const std::vector<Run>& runs) {
+  convergence.iterations = numbers_of(runs);
+  for (const double number : convergence.iterations) {
     std::vector<double> best;
     std::vector<double> mean;
     std::vector<double> alive;
     for (const Run& run : runs) {
-      const double unit = made.is_ratio ? run.back().best : 1;
+      const double unit = convergence.is_ratio ? run.back().best : 1;
       const Iteration* now = reached(run, number);
       const bool has_route = now != nullptr && std::isfinite(now->best);
       best.push_back(has_route ? now->best / unit : kInfinity);
@@ -74,19 +74,19 @@ void add_curves(Convergence& made, const std::vector<Run>& runs) {
         alive.push_back(now->alive);
       }
     }
-    made.best.push_back(spread_of(best));
-    made.mean.push_back(spread_of(mean));
-    made.alive.push_back(spread_of(alive));
+    convergence.best.push_back(spread_of(best));
+    convergence.mean.push_back(spread_of(mean));
+    convergence.alive.push_back(spread_of(alive));
   }
 }
 
 Convergence convergence_of_runs(const std::vector<Run>& runs, bool is_ratio) {
-  Convergence made;
-  made.runs = runs.size();
-  made.is_ratio = is_ratio;
-  made.is_population =
+  Convergence convergence;
+  convergence.runs = runs.size();
+  convergence.is_ratio = is_ratio;
+  convergence.is_population =
       std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.front().alive >= 0; });
-  add_curves(made, runs);
+  add_curves(convergence, runs);
   std::vector<double> best_from;
   std::vector<double> mean_from;
   std::vector<double> alive;
@@ -100,10 +100,10 @@ Convergence convergence_of_runs(const std::vector<Run>& runs, bool is_ratio) {
     }));
     alive.push_back(run.back().alive);
   }
-  made.best_from = spread_of(best_from);
-  made.mean_from = spread_of(mean_from);
-  made.alive_at_end = spread_of(alive);
-  return made;
+  convergence.best_from = spread_of(best_from);
+  convergence.mean_from = spread_of(mean_from);
+  convergence.alive_at_end = spread_of(alive);
+  return convergence;
 }
 
 double number_or(const host::Json& json, const char* key, double otherwise) {

@@ -111,7 +111,7 @@ std::string caption_of(const MetricAnalysis& metric, const Rows& rows) {
                         (less_is_better ? " (is better)" : "") + ", right of it more" +
                         (less_is_better ? "." : " (is better).");
   const auto all = std::count_if(metric.comparisons.begin(), metric.comparisons.end(),
-                                 [](const Comparison& made) { return made.used > 0; });
+                                 [](const Comparison& comparison) { return comparison.used > 0; });
   if (rows.size() < std::size_t(all)) {
     caption += " " + std::to_string(rows.size()) + " of " +
                counted(std::size_t(all), "comparison") +

@@ -132,11 +132,11 @@ Figure convergence_figure(const StudyData& data, const Convergence& convergence)
   draw_bottom(canvas, along, kConvergenceTop, bottom, "Iteration, number");
   if (is_population) {
     draw(canvas, band_of(convergence, convergence.mean), along, up, mean);
-    double most = 1;
+    double highest = 1;
     for (const Spread& spread : convergence.alive) {
-      most = std::max(most, spread.high);
+      highest = std::max(highest, spread.high);
     }
-    const Axis alive(0, 1.04 * most, false, kAliveBottom, kAliveTop);
+    const Axis alive(0, 1.04 * highest, false, kAliveBottom, kAliveTop);
     draw_left(canvas, alive, kConvergenceLeft, kConvergenceRight, kAliveTop,
               "Found a route in the iteration, number");
     draw(canvas, band_of(convergence, convergence.alive), along, alive, best);

@@ -166,10 +166,10 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
   }
   std::vector<double> all = places(*curves);
   all.push_back(1);
-  const double most = *std::max_element(all.begin(), all.end());
+  const double highest = *std::max_element(all.begin(), all.end());
   // From 1: no ratio to the lowest is smaller.
-  const bool wide = most > kWideProfile;
-  const Axis axis(1, std::max(most * (wide ? 1.1 : 1), 1.001), wide, kCurveLeft, kCurveRight);
+  const bool wide = highest > kWideProfile;
+  const Axis axis(1, std::max(highest * (wide ? 1.1 : 1), 1.001), wide, kCurveLeft, kCurveRight);
   Canvas canvas;
   const double height = draw_curves(canvas, data, *curves, axis,
                                     axis_label("ratio to the lowest of all pipelines", axis), "");

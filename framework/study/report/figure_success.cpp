@@ -34,13 +34,13 @@ std::size_t all_runs(const Analysis& analysis) {
 }
 
 /// Lines of at most that many characters, broken at the dots between the parts.
-std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
+std::vector<std::string> wrapped(const std::string& text, std::size_t max_characters) {
   std::vector<std::string> lines(1);
   std::size_t at = 0;
   while (at < text.size()) {
     const std::size_t end = std::min(text.find(" · ", at), text.size());
     const std::string part = text.substr(at, end - at);
-    if (!lines.back().empty() && characters(lines.back()) + characters(part) + 3 > most) {
+    if (!lines.back().empty() && characters(lines.back()) + characters(part) + 3 > max_characters) {
       lines.emplace_back();
     }
     lines.back() += (lines.back().empty() ? "" : " · ") + part;
@@ -50,8 +50,9 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
 }
 }  // namespace
 
-std::string pipeline_label(const StudyData& data, std::size_t pipeline, std::size_t most) {
-  return shortened(printable(short_names(data)[pipeline]), most);
+std::string pipeline_label(const StudyData& data, std::size_t pipeline,
+                           std::size_t max_characters) {
+  return shortened(printable(short_names(data)[pipeline]), max_characters);
 }
 
 std::size_t room_beside(const std::string& text) {

@@ -28,7 +28,8 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
 Figure convergence_figure(const StudyData& data, const Convergence& convergence);
 
 /// The pipeline's short name, of at most that many characters.
-std::string pipeline_label(const StudyData& data, std::size_t pipeline, std::size_t most = 40);
+std::string pipeline_label(const StudyData& data, std::size_t pipeline,
+                           std::size_t max_characters = 40);
 /// Number of characters of a name that fit to the left of a right-aligned text.
 std::size_t room_beside(const std::string& text);
 /// "0.95 [0.93, 0.97]".

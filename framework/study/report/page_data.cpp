@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -22,10 +21,7 @@ std::string short_number(std::string_view metric, double value) {
   if (!std::isfinite(value)) {
     return "null";
   }
-  char text[64];
-  const auto done =
-      std::to_chars(text, text + sizeof text, value + 0.0, std::chars_format::general, 6);
-  return {text, done.ptr};
+  return host::with_digits(value + 0.0, 6);
 }
 
 /// Unique texts, and the index of the text of each run.

@@ -9,6 +9,21 @@ namespace altiplan::study::report {
 namespace {
 
 Cell number(double value, int digits = 4) { return {readable(value, digits), value}; }
+/// Columns by their titles; '#' before one of numbers.
+std::vector<Column> columns(std::initializer_list<std::string> titles) {
+  std::vector<Column> all;
+  for (const std::string& title : titles) {
+    const bool is_number = title.starts_with('#');
+    all.push_back({title.substr(is_number ? 1 : 0), is_number});
+  }
+  return all;
+}
+
+Cell code(const std::string& text) {
+  Cell cell(text);
+  cell.kind = "code";
+  return cell;
+}
 Cell count(std::size_t value) { return {grouped(value), double(value)}; }
 /// "12 [9, 20]".
 Cell spread(const Spread& over) {
@@ -48,13 +63,14 @@ const std::string& name(const Content& content, std::size_t pipeline) {
 }
 
 /// The pipeline that a comparison favours at 5 % after Holm, or a dash.
-std::string winner(const Content& content, const MetricAnalysis& metric, const Comparison& made) {
-  if (!(made.p_holm < kAlpha) || made.rank_biserial() == 0) {
+std::string winner(const Content& content, const MetricAnalysis& metric,
+                   const Comparison& comparison) {
+  if (!(comparison.p_holm < kAlpha) || comparison.rank_biserial() == 0) {
     return "–";
   }
-  const bool has_less = made.rank_biserial() < 0;
+  const bool has_less = comparison.rank_biserial() < 0;
   const bool is_better = has_less == (metric.better == Better::lower);
-  return name(content, is_better ? made.pipeline : made.against);
+  return name(content, is_better ? comparison.pipeline : comparison.against);
 }
 
 }  // namespace
@@ -70,38 +86,32 @@ Table convergence_table(const Content& content) {
       "The first iteration with a best length within 1 % of the final best, and with a mean "
       "within 3 % of it; the number of a population that found a route in the last "
       "iteration: median [10th, 90th percentile] over runs, a dash if not reached",
-      {{"pipeline"},
-       {"step"},
-       {"runs", true},
-       {"best within 1 %", true},
-       {"mean within 3 %", true},
-       {"alive at the end", true}},
+      columns({"pipeline", "step", "#runs", "#best within 1 %", "#mean within 3 %",
+               "#alive at the end"}),
       {}};
-  for (const Convergence& made : content.convergence) {
+  for (const Convergence& each : content.convergence) {
     const auto of_population = [&](const Spread& over) {
-      return made.is_population ? spread(over) : Cell("–");
+      return each.is_population ? spread(over) : Cell("–");
     };
-    table.rows.push_back({name(content, made.pipeline), printable(made.step), count(made.runs),
-                          spread(made.best_from), of_population(made.mean_from),
-                          of_population(made.alive_at_end)});
+    table.rows.push_back({name(content, each.pipeline), printable(each.step), count(each.runs),
+                          spread(each.best_from), of_population(each.mean_from),
+                          of_population(each.alive_at_end)});
   }
   return table;
 }
 
 Table failure_table(const Content& content) {
-  Table table{
-      "failures",
-      "Unexplained failures: runs that ended by a fault of a plugin or its build",
-      {{"pipeline"}, {"outcome"}, {"message"}, {"runs", true}, {"for example"}, {"to reproduce"}},
-      {}};
+  Table table{"failures",
+              "Unexplained failures: runs that ended by a fault of a plugin or its build",
+              columns({"pipeline", "outcome", "message", "#runs", "for example", "to reproduce"}),
+              {}};
   for (const FailureGroup& group : content.failures) {
     const RunRow& row = content.data.rows[group.rows.front()];
     Cell message(shortened(printable(group.message), 300));
     message.kind = "message";
     Cell example(content.data.scenarios[row.scenario].name + " #" + std::to_string(row.repetition));
     example.open = "run " + std::to_string(group.rows.front());
-    Cell command(replay_command(content, row));
-    command.kind = "code";
+    Cell command = code(replay_command(content, row));
     table.rows.push_back({name(content, group.pipeline), outcome_text(group.outcome), message,
                           count(group.rows.size()), example, command});
   }
@@ -111,14 +121,8 @@ Table failure_table(const Content& content) {
 Table claim_table(const Content& content) {
   Table table{"verdicts",
               "Claims and their verdicts",
-              {{"claim"},
-               {"that"},
-               {"claimed"},
-               {"verdict"},
-               {"estimate", true},
-               {"interval", true},
-               {"pairs used", true},
-               {"of", true}},
+              columns({"claim", "that", "claimed", "verdict", "#estimate", "#interval",
+                       "#pairs used", "#of"}),
               {}};
   for (const JudgedClaim& judged : content.claims) {
     table.rows.push_back({judged.claim.id, judged.claim.that, wanted(judged.claim),
@@ -132,12 +136,7 @@ Table claim_table(const Content& content) {
 Table success_table(const Content& content) {
   Table table{"success",
               "Share of solved runs, with its 95 % interval",
-              {{"pipeline"},
-               {"runs", true},
-               {"solved", true},
-               {"share", true},
-               {"interval", true},
-               {"other outcomes"}},
+              columns({"pipeline", "#runs", "#solved", "#share", "#interval", "other outcomes"}),
               {}};
   for (std::size_t p = 0; p < content.data.pipelines.size(); ++p) {
     const Success& success = content.analysis.success[p];
@@ -156,25 +155,19 @@ Table success_table(const Content& content) {
 }
 
 Table success_comparison_table(const Content& content) {
-  Table table{"success-pairs",
-              "Success, pipeline against pipeline: exact sign test over n scenarios (repetitions "
-              "if there is one scenario), Holm's correction over all rows",
-              {{"pipeline"},
-               {"against"},
-               {"n", true},
-               {"it more often", true},
-               {"the other more often", true},
-               {"p", true},
-               {"p (Holm)", true},
-               {"runs of both", true},
-               {"it alone solved", true},
-               {"the other alone solved", true}},
-              {}};
-  for (const SuccessComparison& made : content.analysis.success_comparisons) {
-    table.rows.push_back({name(content, made.pipeline), name(content, made.against),
-                          units(made.test.units), count(made.test.second_more),
-                          count(made.test.first_more), p_value(made.test.p), p_value(made.p_holm),
-                          count(made.pairs), count(made.only_pipeline), count(made.only_against)});
+  Table table{
+      "success-pairs",
+      "Success, pipeline against pipeline: exact sign test over n scenarios (repetitions "
+      "if there is one scenario), Holm's correction over all rows",
+      columns({"pipeline", "against", "#n", "#it more often", "#the other more often", "#p",
+               "#p (Holm)", "#runs of both", "#it alone solved", "#the other alone solved"}),
+      {}};
+  for (const SuccessComparison& comparison : content.analysis.success_comparisons) {
+    table.rows.push_back({name(content, comparison.pipeline), name(content, comparison.against),
+                          units(comparison.test.units), count(comparison.test.second_more),
+                          count(comparison.test.first_more), p_value(comparison.test.p),
+                          p_value(comparison.p_holm), count(comparison.pairs),
+                          count(comparison.only_pipeline), count(comparison.only_against)});
   }
   return table;
 }
@@ -182,14 +175,8 @@ Table success_comparison_table(const Content& content) {
 Table metric_table(const Content& content) {
   Table table{"metrics",
               "Values of solved runs",
-              {{"metric"},
-               {"pipeline"},
-               {"runs", true},
-               {"median", true},
-               {"quartiles", true},
-               {"mean", true},
-               {"least", true},
-               {"greatest", true}},
+              columns({"metric", "pipeline", "#runs", "#median", "#quartiles", "#mean", "#least",
+                       "#greatest"}),
               {}};
   for (const MetricAnalysis& metric : content.analysis.metrics) {
     for (std::size_t p = 0; p < content.data.pipelines.size(); ++p) {
@@ -213,45 +200,37 @@ Table metric_table(const Content& content) {
 }
 
 Table comparison_table(const Content& content, const MetricAnalysis& metric) {
-  Table table{"pairs-" + slug(metric.metric),
-              metric_label(metric.metric) +
-                  ", pipeline against pipeline on the pairs that both solved (" +
-                  (metric.better == Better::lower ? "lower" : "higher") +
-                  " is better): Wilcoxon's signed-rank test over n scenarios (repetitions if "
-                  "there is one scenario), Holm's correction over all rows",
-              {{"pipeline"},
-               {"against"},
-               {metric.is_ratio ? "median ratio" : "median difference", true},
-               {"95 % interval", true},
-               {"n", true},
-               {"p", true},
-               {"p (Holm)", true},
-               {"rank-biserial", true},
-               {"better"},
-               {"both solved", true},
-               {"of pairs", true}},
-              {}};
-  for (const Comparison& made : metric.comparisons) {
-    const std::string sign = !metric.is_ratio && made.effect.median > 0 ? "+" : "";
+  Table table{
+      "pairs-" + slug(metric.metric),
+      metric_label(metric.metric) + ", pipeline against pipeline on the pairs that both solved (" +
+          (metric.better == Better::lower ? "lower" : "higher") +
+          " is better): Wilcoxon's signed-rank test over n scenarios (repetitions if "
+          "there is one scenario), Holm's correction over all rows",
+      columns({"pipeline", "against", metric.is_ratio ? "#median ratio" : "#median difference",
+               "#95 % interval", "#n", "#p", "#p (Holm)", "#rank-biserial", "better",
+               "#both solved", "#of pairs"}),
+      {}};
+  for (const Comparison& comparison : metric.comparisons) {
+    const std::string sign = !metric.is_ratio && comparison.effect.median > 0 ? "+" : "";
     table.rows.push_back(
-        {name(content, made.pipeline), name(content, made.against),
-         Cell(made.used > 0 ? sign + readable(made.effect.median) : "–", made.effect.median),
-         interval_of(made.effect.interval, 4), tested(made.effect), p_value(made.p()),
-         p_value(made.p_holm), number(made.rank_biserial(), 3), winner(content, metric, made),
-         count(made.used), count(made.pairs)});
+        {name(content, comparison.pipeline), name(content, comparison.against),
+         Cell(comparison.used > 0 ? sign + readable(comparison.effect.median) : "–",
+              comparison.effect.median),
+         interval_of(comparison.effect.interval, 4), tested(comparison.effect),
+         p_value(comparison.p()), p_value(comparison.p_holm), number(comparison.rank_biserial(), 3),
+         winner(content, metric, comparison), count(comparison.used), count(comparison.pairs)});
   }
   return table;
 }
 
 Table pipeline_table(const Content& content) {
-  Table table{"pipelines", "Pipelines", {{"pipeline"}, {"file"}, {"keys set"}}, {}};
+  Table table{"pipelines", "Pipelines", columns({"pipeline", "file", "keys set"}), {}};
   for (const StoredVariant& variant : content.data.pipelines) {
     std::string keys;
     for (const std::string& key : variant.set) {
       keys += (keys.empty() ? "" : ", ") + key;
     }
-    Cell file(std::filesystem::path(variant.file).filename().string());
-    file.kind = "code";
+    Cell file = code(std::filesystem::path(variant.file).filename().string());
     Cell set(keys.empty() ? "–" : keys);
     set.kind = keys.empty() ? "" : "code";
     table.rows.push_back({variant.name, file, set});
@@ -262,21 +241,11 @@ Table pipeline_table(const Content& content) {
 Table session_table(const Content& content) {
   Table table{"sessions",
               "Calls of altiplan study that made the runs",
-              {{"started"},
-               {"host"},
-               {"processor"},
-               {"cores", true},
-               {"memory, GB", true},
-               {"system"},
-               {"altiplan"},
-               {"jobs", true},
-               {"reuse", true},
-               {"limits enforced by"},
-               {"command"}},
+              columns({"started", "host", "processor", "#cores", "#memory, GB", "system",
+                       "altiplan", "#jobs", "#reuse", "limits enforced by", "command"}),
               {}};
   for (const StoredSession& session : content.data.sessions) {
-    Cell command(session.command);
-    command.kind = "code";
+    Cell command = code(session.command);
     table.rows.push_back({session.started, session.host, session.cpu,
                           count(std::size_t(std::max(0, session.cores))),
                           number(session.memory_mb / 1024, 3), session.system, session.version,
@@ -287,10 +256,9 @@ Table session_table(const Content& content) {
 }
 
 Table build_table(const Content& content) {
-  Table table{"builds", "Builds of the plugins that ran", {{"kind"}, {"plugin"}, {"build"}}, {}};
+  Table table{"builds", "Builds of the plugins that ran", columns({"kind", "plugin", "build"}), {}};
   for (const auto& plugin : content.builds.plugins) {
-    Cell build(plugin[2]);
-    build.kind = "code";
+    Cell build = code(plugin[2]);
     table.rows.push_back({plugin[0], plugin[1], build});
   }
   return table;

@@ -38,11 +38,11 @@ std::string claims_in_short(const std::vector<JudgedClaim>& claims) {
 }
 
 std::size_t max_repetitions(const StudyData& data) {
-  int most = 0;
+  int repetitions = 0;
   for (const RunRow& row : data.rows) {
-    most = std::max(most, row.repetition + 1);
+    repetitions = std::max(repetitions, row.repetition + 1);
   }
-  return std::size_t(most);
+  return std::size_t(repetitions);
 }
 
 std::string left_out_text(const Content& content) {
@@ -102,7 +102,9 @@ std::vector<std::string> lacking(const Content& content) {
   if (content.absent.scenarios > 0) {
     sentences.push_back("No run of " + counted(content.absent.scenarios, "scenario") + ".");
   }
-  const auto lacks = [](const Comparison& made) { return made.used > 0 && !made.effect.interval; };
+  const auto lacks = [](const Comparison& comparison) {
+    return comparison.used > 0 && !comparison.effect.interval;
+  };
   for (const MetricAnalysis& metric : content.analysis.metrics) {
     if (std::any_of(metric.comparisons.begin(), metric.comparisons.end(), lacks)) {
       sentences.push_back("Comparisons of fewer than " + std::to_string(fewest_units(kConfidence)) +

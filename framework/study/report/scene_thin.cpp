@@ -56,15 +56,15 @@ void thin_ground(host::Json& scene) {
 }
 
 /// Adds the sample with the lowest value.
-void keep_least(const host::Json& values, std::set<std::size_t>& kept) {
-  std::optional<std::size_t> least;
+void keep_min(const host::Json& values, std::set<std::size_t>& kept) {
+  std::optional<std::size_t> min_at;
   for (std::size_t at = 0; at < values.size(); ++at) {
-    if (values[at].is_number() && (!least || values[at] < values[*least])) {
-      least = at;
+    if (values[at].is_number() && (!min_at || values[at] < values[*min_at])) {
+      min_at = at;
     }
   }
-  if (least) {
-    kept.insert(*least);
+  if (min_at) {
+    kept.insert(*min_at);
   }
 }
 
@@ -100,9 +100,9 @@ void thin_profile(host::Json& profile) {
       kept.insert(at);
     }
   }
-  keep_least(heights_over_ground(profile), kept);
+  keep_min(heights_over_ground(profile), kept);
   for (const host::Json& clearances : profile.at("to")) {
-    keep_least(clearances, kept);
+    keep_min(clearances, kept);
   }
   const auto thin = [&](host::Json& values) {
     host::Json some = host::Json::array();

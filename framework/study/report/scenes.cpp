@@ -176,16 +176,16 @@ class SceneMaker {
   }
 
   Scenes take(std::size_t pairs) {
-    Scenes made;
-    made.what = what(pairs);
-    made.scenes = std::move(scenes_);
-    made.notes.assign(notes_.begin(), notes_.end());
+    Scenes result;
+    result.what = what(pairs);
+    result.scenes = std::move(scenes_);
+    result.notes.assign(notes_.begin(), notes_.end());
     for (const auto& [change, runs] : changed_) {
-      made.changed.push_back(change + ": " + counted(runs, "run") + " made before " +
-                             (runs == 1 ? "is" : "are") + " not shown in 3-D.");
+      result.changed.push_back(change + ": " + counted(runs, "run") + " made before " +
+                               (runs == 1 ? "is" : "are") + " not shown in 3-D.");
     }
-    made.why_not = std::move(why_not_);
-    return made;
+    result.why_not = std::move(why_not_);
+    return result;
   }
 
  private:
@@ -202,7 +202,7 @@ class SceneMaker {
     const std::size_t line = std::min(text.find('\n'), text.size());
     const auto changes =
         host::Json::parse(text.substr(0, line)).get<std::vector<std::vector<std::string>>>();
-    PackedScene made;
+    PackedScene scene;
     for (std::size_t at = 0; at < rows.size(); ++at) {
       for (const std::string& change : changes.at(at)) {
         ++changed_[change];
@@ -210,19 +210,19 @@ class SceneMaker {
         why += (why.empty() ? "" : "; ") + change;
       }
       if (changes[at].empty()) {
-        made.rows.push_back(rows[at]);
+        scene.rows.push_back(rows[at]);
       }
     }
-    made.data = text.substr(std::min(line + 1, text.size()));
-    if (made.rows.empty()) {
+    scene.data = text.substr(std::min(line + 1, text.size()));
+    if (scene.rows.empty()) {
       return;
     }
-    if (made.data.size() > options_.max_bytes_each) {
-      leave_out(chosen, "its scene has " + grouped(made.data.size()) + " bytes, the limit is " +
+    if (scene.data.size() > options_.max_bytes_each) {
+      leave_out(chosen, "its scene has " + grouped(scene.data.size()) + " bytes, the limit is " +
                             grouped(options_.max_bytes_each));
-    } else if (bytes_ + made.data.size() <= options_.max_bytes) {
-      bytes_ += made.data.size();
-      scenes_.push_back(std::move(made));
+    } else if (bytes_ + scene.data.size() <= options_.max_bytes) {
+      bytes_ += scene.data.size();
+      scenes_.push_back(std::move(scene));
     } else {
       ++beyond_;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,15 @@
 
 namespace altiplan::zones {
 
-/// A prism whose floor or ceiling follows the ground. One of each pair is infinite; at a limit
+/// A prism whose floor or ceiling may follow the ground. One of each pair is infinite; at a limit
 /// above the ground the prism's own one is.
 struct GroundPrism {
   Prism prism;
   double above_floor = -kInfinity;
   double above_ceiling = kInfinity;
   double slope = 0;  ///< of the ground over its bounding rectangle, at most
+
+  bool follows_ground() const { return std::isfinite(above_floor) || std::isfinite(above_ceiling); }
 };
 
 /// Zones with limits above the ground, which is known all over their bounding rectangles.

@@ -11,12 +11,12 @@
 namespace altiplan::zones {
 namespace {
 
-using kit::AirspaceLimit;
-using kit::AirspaceVolume;
-using kit::AirspaceZone;
 using kit::Point2;
 using kit::Ring;
-using Datum = AirspaceLimit::Datum;
+using kit::Zone;
+using kit::ZoneLimit;
+using kit::ZoneVolume;
+using Datum = ZoneLimit::Datum;
 using Use = PublishedRules::Use;
 
 // Edges are straight in longitude and latitude to this, metres, where the frame's map bends them.
@@ -82,8 +82,8 @@ class Converter {
   Converter(const PublishedRules& rules, const Site& site, Clip* clip)
       : rules_(rules), site_(site), clip_(clip), ground_(ground_area(*site.before)) {}
 
-  void add(const AirspaceZone& zone) {
-    for (const AirspaceVolume& volume : zone.volumes) {
+  void add(const Zone& zone) {
+    for (const ZoneVolume& volume : zone.volumes) {
       GroundPrism limits{prism_of(volume), -kInfinity, kInfinity};
       set(volume.lower, limits.prism.floor, limits.above_floor);
       set(volume.upper, limits.prism.ceiling, limits.above_ceiling);
@@ -123,7 +123,7 @@ class Converter {
   }
 
  private:
-  Prism prism_of(const AirspaceVolume& volume) const {
+  Prism prism_of(const ZoneVolume& volume) const {
     Prism prism{local(site_.frame, volume.polygon.outline), {}};
     for (const Ring& hole : volume.polygon.holes) {
       prism.holes.push_back(local(site_.frame, hole));
@@ -131,7 +131,7 @@ class Converter {
     return prism;
   }
 
-  void set(const AirspaceLimit& limit, double& sea, double& above) {
+  void set(const ZoneLimit& limit, double& sea, double& above) {
     if (limit.datum == Datum::ground) {
       above = limit.metres;
     } else if (limit.datum == Datum::standard) {
@@ -145,13 +145,13 @@ class Converter {
   void close(const std::string& name, Prism prism) {
     prism.floor = -kInfinity;
     prism.ceiling = kInfinity;
-    zones.push_back({name, std::move(prism), {}, false});
+    zones.push_back({name, {std::move(prism)}});
   }
 
   /// Closed at all heights where the ground is not known.
   void add_part(const std::string& name, const GroundPrism& limits) {
-    if (!std::isfinite(limits.above_floor) && !std::isfinite(limits.above_ceiling)) {
-      zones.push_back({name, limits.prism, {}, false});
+    if (!limits.follows_ground()) {
+      zones.push_back({name, limits});
       return;
     }
     if (!site_.before->has_ground()) {
@@ -166,7 +166,7 @@ class Converter {
         GroundPrism above = limits;
         above.prism = within;
         above.slope = slope;
-        zones.push_back({name, {}, std::move(above), true});
+        zones.push_back({name, std::move(above)});
       } else {
         ++without_ground_;
         close(name, within);
@@ -187,13 +187,13 @@ class Converter {
   std::size_t beyond_ = 0;
 };
 
-bool has_times(const AirspaceZone& zone) {
+bool has_times(const Zone& zone) {
   return std::any_of(zone.periods.begin(), zone.periods.end(), [](const auto& period) {
     return std::isfinite(period.from) || std::isfinite(period.until) || !period.hours.empty();
   });
 }
 
-Use use_of(const AirspaceZone& zone, const PublishedRules& rules) {
+Use use_of(const Zone& zone, const PublishedRules& rules) {
   switch (zone.restriction) {
     case kit::Restriction::ask:
       return rules.ask;
@@ -207,7 +207,7 @@ Use use_of(const AirspaceZone& zone, const PublishedRules& rules) {
 /// "keep out: 2 P, 6 R; ask (closed): 3 CTR; inform (skipped): 4 G"
 std::string mapping(const kit::Airspace& airspace, const PublishedRules& rules) {
   std::map<kit::Restriction, std::map<std::string, std::size_t>> counts;
-  for (const AirspaceZone& zone : airspace.zones) {
+  for (const Zone& zone : airspace.zones) {
     ++counts[zone.restriction][zone.type.empty() ? "without a class" : zone.type];
   }
   const auto heading = [](const char* word, Use use) {
@@ -246,7 +246,7 @@ Published published_zones(const kit::Airspace& airspace, const PublishedRules& r
   Converter converter(rules, site, clip);
   std::size_t volumes = 0;
   std::size_t timed = 0;
-  for (const AirspaceZone& zone : airspace.zones) {
+  for (const Zone& zone : airspace.zones) {
     volumes += zone.volumes.size();
     if (use_of(zone, rules) == Use::skip) {
       continue;
@@ -272,15 +272,5 @@ Published published_zones(const kit::Airspace& airspace, const PublishedRules& r
   }
   published.zones = std::move(converter.zones);
   return published;
-}
-
-std::vector<Point2> corners_of(const kit::Airspace& airspace) {
-  std::vector<Point2> corners;
-  for (const AirspaceZone& zone : airspace.zones) {
-    for (const AirspaceVolume& volume : zone.volumes) {
-      corners.insert(corners.end(), volume.polygon.outline.begin(), volume.polygon.outline.end());
-    }
-  }
-  return corners;
 }
 }  // namespace altiplan::zones

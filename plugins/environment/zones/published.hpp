@@ -24,9 +24,7 @@ struct PublishedRules {
 
 struct PublishedZone {
   std::string name;
-  Prism prism;        ///< of a zone between altitudes
-  GroundPrism above;  ///< of a zone with a limit above the ground
-  bool on_ground = false;
+  GroundPrism limits;
 };
 
 struct Published {
@@ -38,7 +36,4 @@ struct Published {
 /// The zones that are closed at some time of the flight. The site has a frame with a position.
 Published published_zones(const kit::Airspace& airspace, const PublishedRules& rules,
                           const Site& site, double horizon_s, Clip* clip);
-
-/// All corners, for a frame.
-std::vector<kit::Point2> corners_of(const kit::Airspace& airspace);
 }  // namespace altiplan::zones

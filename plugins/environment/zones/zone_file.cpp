@@ -8,6 +8,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/formats/geojson.hpp"
 #include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/kit/formats/iso_time.hpp"
 #include "published.hpp"
 
 namespace altiplan::zones {
@@ -15,12 +16,23 @@ namespace {
 
 using kit::GeoFeature;
 using kit::GeoJson;
-using kit::MissionZone;
+using kit::Zone;
+using Datum = kit::ZoneLimit::Datum;
 
-void expect_limits(const MissionZone& zone) {
-  if (!(zone.floor_m.value_or(-kInfinity) < zone.ceiling_m.value_or(kInfinity))) {
+void expect_limits(const Zone& zone) {
+  const kit::ZoneLimit& lower = zone.volumes.front().lower;
+  const kit::ZoneLimit& upper = zone.volumes.front().upper;
+  if (lower.datum == Datum::sea && upper.datum == Datum::sea && !(lower.metres < upper.metres)) {
     throw Error("the floor must be below the ceiling");
   }
+}
+
+double seconds(const std::string& time) {
+  const std::optional<double> result = kit::parse_iso_time(time);
+  if (!result) {
+    throw Error("expected a time such as 2026-06-17T05:00:00Z (ISO 8601), found '" + time + "'");
+  }
+  return *result;
 }
 
 const TypeRule* rule_for(const FileRules& rules, const std::string& type) {
@@ -39,31 +51,35 @@ std::string counted(const std::map<std::string, std::size_t>& types) {
   return text;
 }
 
-/// A feature's own limits take precedence over those of its type.
-FileZone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRule* rule) {
-  FileZone result;
-  MissionZone& zone = result.zone;
-  zone.name = feature.id;
-  zone.polygon = feature.polygon;
-  zone.keep_in = rules.kind == Kind::keep_in;
-  zone.floor_m = feature.metres(rules.floor);
-  zone.ceiling_m = feature.metres(rules.ceiling);
-  if (rule != nullptr) {
-    zone.floor_m = zone.floor_m ? zone.floor_m : rule->floor_m;
-    zone.ceiling_m = zone.ceiling_m ? zone.ceiling_m : rule->ceiling_m;
+/// A limit of the property, else that of our own file, else that of the feature's type.
+void set_limit(const std::optional<double>& property, const std::optional<double>& of_type,
+               kit::ZoneLimit& limit) {
+  if (property || limit.datum == Datum::none) {
+    limit = kit::ZoneLimit::sea(property ? property : of_type);
   }
-  expect_limits(zone);
-  result.from = feature.text(rules.from);
-  result.until = feature.text(rules.until);
-  return result;
 }
 
-/// Properties that are named like a scenario's limits are not read automatically.
+Zone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRule* rule) {
+  Zone zone = kit::zone_of(feature);
+  if (zone.restriction == kit::Restriction::unspecified) {
+    zone.restriction = rules.kind;
+  }
+  const TypeRule none;
+  const TypeRule& type = rule != nullptr ? *rule : none;
+  set_limit(feature.metres(rules.floor), type.floor_m, zone.volumes.front().lower);
+  set_limit(feature.metres(rules.ceiling), type.ceiling_m, zone.volumes.front().upper);
+  expect_limits(zone);
+  zone.periods = time_window(feature.text(rules.from), feature.text(rules.until));
+  return zone;
+}
+
+/// Properties that are named like a scenario's limits are read automatically in our files alone.
 void expect_limits_read(const std::string& file, const GeoJson& json, const FileRules& rules) {
   for (const auto& [name, key, property] : {std::tuple("floor_m", "floor_property", &rules.floor),
                                             {"ceiling_m", "ceiling_property", &rules.ceiling}}) {
     for (const GeoFeature& feature : json.features) {
-      if (property->empty() && feature.properties.contains(name)) {
+      if (property->empty() && feature.properties.contains(name) &&
+          kit::role_of(feature) == kit::Restriction::unspecified) {
         throw Error(file + ": '" + feature.id + "': has the property '" + name +
                     "', which is not read: expected " + key + ": " + name + " in the scenario");
       }
@@ -119,13 +135,12 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
                 (mission.flat.empty() ? "" : ": no area in " + kit::names_text(mission.flat)));
   }
   FileZones result;
-  for (const MissionZone& zone : mission.zones) {
-    result.zones.push_back({zone, "", ""});
-    MissionZone& read = result.zones.back().zone;
-    if (!read.has_role) {
-      read.keep_in = rules.kind == Kind::keep_in;
+  result.zones = mission.zones;
+  for (Zone& zone : result.zones) {
+    if (zone.restriction == kit::Restriction::unspecified) {
+      zone.restriction = rules.kind;
     }
-    expect_limits(read);
+    expect_limits(zone);
   }
   result.notes.push_back(
       std::to_string(mission.zones.size()) + " zones read, " +
@@ -148,7 +163,7 @@ std::optional<kit::Airspace> read_published(const std::string& file, const FileR
                 (rules.floor + rules.ceiling + rules.from + rules.until + rules.type) +
                 "': properties are GeoJSON's");
   }
-  if (airspace && rules.kind == Kind::keep_in) {
+  if (airspace && rules.kind == kit::Restriction::keep_in) {
     throw Error(file + ": is published airspace (" + kit::format_name(airspace->format) +
                 "), expected file_kind: keep_out");
   }
@@ -171,7 +186,8 @@ void TypeRule::describe(Fields& f) {
 }
 
 void FileRules::describe(Fields& f) {
-  f("file_kind", kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
+  f("file_kind", kind,
+    {{"keep_out", kit::Restriction::keep_out}, {"keep_in", kit::Restriction::keep_in}})
       .doc("kind of the zones of GeoJSON and KML; each zone of a fence file declares its own");
   f("floor_property", floor).doc("GeoJSON's property with the floor, m above sea level");
   f("ceiling_property", ceiling).doc("GeoJSON's property with the ceiling, m above sea level");
@@ -182,6 +198,18 @@ void FileRules::describe(Fields& f) {
   f.check(types.empty() || !type.empty(), "types needs type_property");
 }
 
+std::vector<kit::ZonePeriod> time_window(const std::string& from, const std::string& until) {
+  if (from.empty() && until.empty()) {
+    return {};
+  }
+  const kit::ZonePeriod period{
+      from.empty() ? -kInfinity : seconds(from), until.empty() ? kInfinity : seconds(until), {}};
+  if (period.from > period.until) {
+    throw Error("the time window ends at " + until + ", before it starts at " + from);
+  }
+  return {period};
+}
+
 FileZones read_zone_file(const std::string& file, const FileRules& rules) {
   if (auto airspace = read_published(file, rules)) {
     FileZones result;
@@ -189,21 +217,6 @@ FileZones read_zone_file(const std::string& file, const FileRules& rules) {
     return result;
   }
   return kit::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
-}
-
-std::vector<kit::Point2> corners_of(const FileZones& file) {
-  std::vector<kit::Point2> corners;
-  if (file.airspace) {
-    corners = corners_of(*file.airspace);
-  }
-  for (const FileZone& zone : file.zones) {
-    const kit::Ring& outline = zone.zone.polygon.outline;
-    corners.insert(corners.end(), outline.begin(), outline.end());
-    if (outline.empty()) {
-      corners.push_back(zone.zone.centre);
-    }
-  }
-  return corners;
 }
 
 Frame frame_of(const FileZones& file) {

@@ -12,8 +12,6 @@
 
 namespace altiplan::zones {
 
-enum class Kind { keep_out, keep_in };
-
 /// Meaning of a value of the file's type property.
 struct TypeRule {
   std::string is;
@@ -26,7 +24,7 @@ struct TypeRule {
 
 /// Rules that convert a file's features to zones; property names are "" if the file has none.
 struct FileRules {
-  Kind kind = Kind::keep_out;
+  kit::Restriction kind = kit::Restriction::keep_out;
   std::string floor;
   std::string ceiling;
   std::string from;
@@ -38,24 +36,24 @@ struct FileRules {
   bool name_properties() const { return !(floor + ceiling + from + until + type).empty(); }
 };
 
-struct FileZone {
-  kit::MissionZone zone;
-  std::string from;  ///< time window, "" if it is open at this end
-  std::string until;
-};
-
+/// Zones of a file, of one volume each.
 struct FileZones {
   std::optional<kit::Airspace> airspace;  ///< of a file of that kind, which has no other zones
-  std::vector<FileZone> zones;
+  std::vector<kit::Zone> zones;           ///< to keep out of or in
   std::vector<std::string> notes;
 };
+
+/// A time window's ends, "" where it is open; no period where it is open at both. Throws Error for
+/// other texts than times.
+std::vector<kit::ZonePeriod> time_window(const std::string& from, const std::string& until);
 
 /// Reads published airspace, GeoJSON, KML, or the fence from a ground station's file. Throws Error
 /// naming the file.
 FileZones read_zone_file(const std::string& file, const FileRules& rules);
 
-/// Longitude and latitude of the corners of all polygons and the centres of all circles.
-std::vector<kit::Point2> corners_of(const FileZones& file);
+inline std::vector<kit::Point2> corners_of(const FileZones& file) {
+  return kit::corners_of(file.airspace ? file.airspace->zones : file.zones);
+}
 
 /// A frame for a world that has none: its origin is the south-west corner of the zones.
 Frame frame_of(const FileZones& file);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <mutex>
 
-#include "altiplan/kit/formats/iso_time.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
@@ -19,14 +18,6 @@ using kit::Point2;
 using kit::Polygon;
 using kit::Ring;
 using Rings = std::vector<Ring>;
-
-double seconds(const std::string& time) {
-  const std::optional<double> result = kit::parse_iso_time(time);
-  if (!result) {
-    throw Error("expected a time such as 2026-06-17T05:00:00Z (ISO 8601), found '" + time + "'");
-  }
-  return *result;
-}
 
 struct CylinderParams {
   Point at;
@@ -58,9 +49,10 @@ struct PolygonParams {
   }
 };
 
+/// A zone of the scenario: its keys, in which positions may be local or relative to a layer.
 struct ZoneParams {
   std::string id;
-  Kind kind = Kind::keep_out;
+  kit::Restriction kind = kit::Restriction::keep_out;
   std::optional<CylinderParams> cylinder;
   std::optional<PolygonParams> polygon;
   std::optional<double> floor_m;
@@ -70,7 +62,8 @@ struct ZoneParams {
 
   void describe(Fields& f) {
     f("id", id).doc("name for messages");
-    f("kind", kind, {{"keep_out", Kind::keep_out}, {"keep_in", Kind::keep_in}})
+    f("kind", kind,
+      {{"keep_out", kit::Restriction::keep_out}, {"keep_in", kit::Restriction::keep_in}})
         .doc("forbids the inside (keep_out), or everything outside all keep_in zones (keep_in)");
     f("cylinder", cylinder).doc("an upright cylinder");
     f("polygon", polygon).doc("an upright prism");
@@ -128,7 +121,8 @@ class Zones final : public Environment {
     Site site;
     double horizon_s;
     std::optional<Frame> frame;
-    std::vector<Shape> shapes[2];  // by kind
+    std::vector<Shape> keep_out;
+    std::vector<Shape> keep_in;
     std::vector<GroundPrism> above_ground;
     std::vector<std::string> above_ground_names;
     Drawing drawing;
@@ -154,33 +148,30 @@ class Zones final : public Environment {
           throw ParameterError("list." + std::to_string(n), error.what());
         }
       }
-      notes.push_back(std::to_string(shapes[0].size() + above_ground.size()) + " keep-out and " +
-                      std::to_string(shapes[1].size()) + " keep-in zones, " +
+      notes.push_back(std::to_string(keep_out.size() + above_ground.size()) + " keep-out and " +
+                      std::to_string(keep_in.size()) + " keep-in zones, " +
                       std::to_string(inactive) + " not active");
       if (!why_none.empty()) {
         notes.push_back(why_none);
       }
     }
 
-    void add(Kind kind, const Shape& shape, const std::string& name) {
-      shapes[int(kind)].push_back(shape);
-      const auto role = kind == Kind::keep_in ? Drawn::Role::keep_in : Drawn::Role::keep_out;
-      drawing.shapes.push_back({shape, role, name});
+    void add(bool keeps_in, const Shape& shape, const std::string& name) {
+      (keeps_in ? keep_in : keep_out).push_back(shape);
+      drawing.shapes.push_back(
+          {shape, keeps_in ? Drawn::Role::keep_in : Drawn::Role::keep_out, name});
     }
 
-    bool is_active(const std::string& from, const std::string& until) {
-      if (from.empty() && until.empty()) {
+    bool is_active(const std::vector<kit::ZonePeriod>& periods) {
+      if (periods.empty()) {
         return true;
-      }
-      const double start = from.empty() ? -kInfinity : seconds(from);
-      const double end = until.empty() ? kInfinity : seconds(until);
-      if (start > end) {
-        throw Error("the time window ends at " + until + ", before it starts at " + from);
       }
       if (!site.has_start_time) {
         throw Error("a zone with a time window needs the scenario's start_time");
       }
-      const bool active = start <= site.start_time_s + horizon_s && end >= site.start_time_s;
+      const kit::ZonePeriod& window = periods.front();
+      const bool active =
+          window.from <= site.start_time_s + horizon_s && window.until >= site.start_time_s;
       inactive += !active;
       return active;
     }
@@ -216,18 +207,16 @@ class Zones final : public Environment {
       if (file.airspace) {
         add_published(*file.airspace, params, clip ? &*clip : nullptr);
       }
-      for (const FileZone& from : file.zones) {
-        const kit::MissionZone& zone = from.zone;
+      for (const kit::Zone& zone : file.zones) {
         try {
-          if (!is_active(from.from, from.until)) {
+          if (!is_active(zone.periods)) {
             continue;
           }
-          const Kind kind = zone.keep_in ? Kind::keep_in : Kind::keep_out;
-          const std::vector<Shape> parts = clip && kind == Kind::keep_out
-                                               ? clip->cut(shape_of(zone))
-                                               : std::vector<Shape>{shape_of(zone)};
+          const Shape shape = shape_of(zone.volumes.front());
+          const std::vector<Shape> parts =
+              clip && !zone.keeps_in() ? clip->cut(shape) : std::vector<Shape>{shape};
           for (const Shape& part : parts) {
-            add(kind, part, zone.name);
+            add(zone.keeps_in(), part, zone.name);
           }
         } catch (const Error& error) {
           throw Error(name + ": '" + zone.name + "': " + error.what());
@@ -245,23 +234,27 @@ class Zones final : public Environment {
       notes.insert(notes.end(), published.notes.begin(), published.notes.end());
       inactive += published.inactive;
       for (PublishedZone& zone : published.zones) {
-        if (zone.on_ground) {
-          above_ground.push_back(std::move(zone.above));
+        if (zone.limits.follows_ground()) {
+          above_ground.push_back(std::move(zone.limits));
           above_ground_names.push_back(zone.name);
         } else {
-          add(Kind::keep_out, zone.prism, zone.name);
+          add(false, zone.limits.prism, zone.name);
         }
       }
     }
 
-    Shape shape_of(const kit::MissionZone& zone) const {
-      const double floor = zone.floor_m.value_or(-kInfinity);
-      const double ceiling = zone.ceiling_m.value_or(kInfinity);
-      if (zone.polygon.outline.empty()) {
-        const auto [x, y] = site.frame.to_local(zone.centre[0], zone.centre[1]);
-        return Cylinder{x, y, zone.radius_m, floor, ceiling};
+    /// Of a volume whose limits are above sea level.
+    Shape shape_of(const kit::ZoneVolume& volume) const {
+      const auto height = [](const kit::ZoneLimit& limit, double none) {
+        return limit.datum == kit::ZoneLimit::Datum::none ? none : limit.metres;
+      };
+      const double floor = height(volume.lower, -kInfinity);
+      const double ceiling = height(volume.upper, kInfinity);
+      if (volume.polygon.outline.empty()) {
+        const auto [x, y] = site.frame.to_local(volume.centre[0], volume.centre[1]);
+        return Cylinder{x, y, volume.radius_m, floor, ceiling};
       }
-      return prism(zone.polygon, floor, ceiling);
+      return prism(volume.polygon, floor, ceiling);
     }
 
     void read_zone(const ZoneParams& zone, std::size_t n) {
@@ -288,11 +281,12 @@ class Zones final : public Environment {
         shape = is_local ? Shape(Prism{polygon.outline, polygon.holes, floor, ceiling})
                          : prism(polygon, floor, ceiling);
       }
-      if (!is_active(zone.from, zone.until)) {
+      if (!is_active(time_window(zone.from, zone.until))) {
         return;
       }
-      add(zone.kind, shape, zone.id);
-      if (zone.cylinder && zone.kind == Kind::keep_out) {
+      const bool keeps_in = zone.kind == kit::Restriction::keep_in;
+      add(keeps_in, shape, zone.id);
+      if (zone.cylinder && !keeps_in) {
         const auto& cylinder = std::get<Cylinder>(shape);
         const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;
         threats.push_back({{cylinder.x, cylinder.y, middle},
@@ -304,8 +298,8 @@ class Zones final : public Environment {
   };
 
   explicit Zones(Reader reader)
-      : keep_out_(std::move(reader.shapes[int(Kind::keep_out)])),
-        keep_in_(std::move(reader.shapes[int(Kind::keep_in)])),
+      : keep_out_(std::move(reader.keep_out)),
+        keep_in_(std::move(reader.keep_in)),
         above_ground_(*reader.site.before, std::move(reader.above_ground)),
         over_approximation_(above_ground_.over_approximation(reader.site.vehicle.radius_m)),
         drawing_(std::move(reader.drawing)),
@@ -316,11 +310,11 @@ class Zones final : public Environment {
     return keep_in_.empty() ? keep_out_.bounds().united(above_ground_.bounds()) : Box{};
   }
   double do_clearance(const Vec3& p) const override {
-    double least = keep_out_.clearance(p);
+    double nearest = keep_out_.clearance(p);
     if (!above_ground_.empty()) {
-      least = std::min(least, above_ground_.clearance(p));
+      nearest = std::min(nearest, above_ground_.clearance(p));
     }
-    return keep_in_.empty() ? least : std::min(least, keep_in_.clearance(p));
+    return keep_in_.empty() ? nearest : std::min(nearest, keep_in_.clearance(p));
   }
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     return keep_out_.blocked(a, b, r) || above_ground_.blocked(a, b, r) ||

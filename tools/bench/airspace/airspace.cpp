@@ -19,10 +19,10 @@ struct Question {
 };
 
 /// Around the zones, up to 6,000 m, within ten years.
-std::vector<Question> questions(const std::vector<kit::AirspaceZone>& zones, std::size_t count) {
+std::vector<Question> questions(const std::vector<kit::Zone>& zones, std::size_t count) {
   Box box = Box::empty();
-  for (const kit::AirspaceZone& zone : zones) {
-    for (const kit::AirspaceVolume& volume : zone.volumes) {
+  for (const kit::Zone& zone : zones) {
+    for (const kit::ZoneVolume& volume : zone.volumes) {
       for (const kit::Point2& corner : volume.polygon.outline) {
         box = box.united({{corner[0], corner[1], -100}, {corner[0], corner[1], 6000}});
       }

@@ -11,7 +11,7 @@
 namespace altiplan::kit {
 namespace {
 
-using Datum = AirspaceLimit::Datum;
+using Datum = ZoneLimit::Datum;
 
 // "No upper limit", in metres or feet, and as a flight level.
 constexpr double kUnlimited = 99999;
@@ -31,13 +31,13 @@ bool is_one_of(const std::string& text, std::initializer_list<const char*> words
   return std::any_of(words.begin(), words.end(), [&](const char* word) { return text == word; });
 }
 
-AirspaceLimit limit_of(const LimitText& text, bool upper, const std::string& zone, Doubts& doubts) {
+ZoneLimit limit_of(const LimitText& text, bool upper, const std::string& zone, Doubts& doubts) {
   const char* const side = upper ? "upper" : "lower";
   const auto unknown = [&](const std::string& why) {
     doubts.add("no known " + std::string(side) + " limit (" + why + "), closed " +
                    (upper ? "upwards" : "downwards"),
                zone);
-    return AirspaceLimit{};
+    return ZoneLimit{};
   };
   if (!text.value || !std::isfinite(*text.value)) {
     return unknown(text.found.empty() ? "none given" : "'" + printable(text.found) + "'");
@@ -107,15 +107,15 @@ std::vector<std::string> Doubts::notes() const {
   return notes;
 }
 
-AirspaceLimit lower_limit(const LimitText& text, const std::string& zone, Doubts& doubts) {
+ZoneLimit lower_limit(const LimitText& text, const std::string& zone, Doubts& doubts) {
   return limit_of(text, false, zone, doubts);
 }
 
-AirspaceLimit upper_limit(const LimitText& text, const std::string& zone, Doubts& doubts) {
+ZoneLimit upper_limit(const LimitText& text, const std::string& zone, Doubts& doubts) {
   return limit_of(text, true, zone, doubts);
 }
 
-void settle(AirspaceVolume& volume, const std::string& zone, Doubts& doubts) {
+void settle(ZoneVolume& volume, const std::string& zone, Doubts& doubts) {
   const bool same = volume.lower.datum == volume.upper.datum;
   const bool empty =
       same && volume.lower.datum != Datum::none && !(volume.lower.metres < volume.upper.metres);
@@ -167,7 +167,21 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-std::string AirspaceZone::label() const {
+std::vector<Point2> corners_of(const std::vector<Zone>& zones) {
+  std::vector<Point2> corners;
+  for (const Zone& zone : zones) {
+    for (const ZoneVolume& volume : zone.volumes) {
+      const Ring& outline = volume.polygon.outline;
+      corners.insert(corners.end(), outline.begin(), outline.end());
+      if (outline.empty()) {
+        corners.push_back(volume.centre);
+      }
+    }
+  }
+  return corners;
+}
+
+std::string Zone::label() const {
   if (id.empty() || name.empty() || id == name) {
     return id.empty() ? name : id;
   }

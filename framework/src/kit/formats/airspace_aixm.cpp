@@ -97,11 +97,11 @@ std::vector<DailyHours> hours_of(const XmlNode& slice, const std::string& zone, 
   return hours;
 }
 
-AirspacePeriod validity_of(const XmlNode& slice, const std::string& zone, Doubts& doubts) {
+ZonePeriod validity_of(const XmlNode& slice, const std::string& zone, Doubts& doubts) {
   const XmlNode period = child(child(slice, "validTime"), "TimePeriod");
-  AirspacePeriod result{period_start(std::string(text_of(period, "beginPosition")), zone, doubts),
-                        period_end(std::string(text_of(period, "endPosition")), zone, doubts),
-                        {}};
+  ZonePeriod result{period_start(std::string(text_of(period, "beginPosition")), zone, doubts),
+                    period_end(std::string(text_of(period, "endPosition")), zone, doubts),
+                    {}};
   settle(result, zone, doubts);
   return result;
 }
@@ -167,7 +167,7 @@ class AixmReader {
 
   /// False if the time slice has no volume.
   bool read_slice(const XmlNode& airspace, const XmlNode& slice) {
-    AirspaceZone zone;
+    Zone zone;
     zone.id = printable(text_of(slice, "designator"));
     zone.name = printable(text_of(slice, "name"));
     zone.type = printable(text_of(slice, "type"));
@@ -195,18 +195,18 @@ class AixmReader {
     }
     // AIXM's W is a warning area.
     zone.restriction = restriction_of(zone.type == "W" ? "WARNING" : zone.type, label, doubts_);
-    AirspacePeriod period = validity_of(slice, label, doubts_);
+    ZonePeriod period = validity_of(slice, label, doubts_);
     period.hours = hours_of(slice, label, doubts_);
     zone.periods.push_back(std::move(period));
     airspace_.zones.push_back(std::move(zone));
     return true;
   }
 
-  void read_volume(const XmlNode& volume, AirspaceZone& zone) {
+  void read_volume(const XmlNode& volume, Zone& zone) {
     const std::string label = zone.label();
-    const AirspaceLimit lower =
+    const ZoneLimit lower =
         lower_limit(limit_at(volume, "lowerLimit", "lowerLimitReference"), label, doubts_);
-    const AirspaceLimit upper =
+    const ZoneLimit upper =
         upper_limit(limit_at(volume, "upperLimit", "upperLimitReference"), label, doubts_);
     for (Polygon& polygon : surface_of(volume, label, 0)) {
       zone.volumes.push_back({std::move(polygon), lower, upper});

@@ -11,7 +11,7 @@
 namespace altiplan::kit {
 namespace {
 
-using Datum = AirspaceLimit::Datum;
+using Datum = ZoneLimit::Datum;
 
 struct Bounds {
   Point2 min{kInfinity, kInfinity};
@@ -32,7 +32,7 @@ struct Height {
   double ground;
 };
 
-Height height_of(const AirspaceLimit& limit, double none, double qnh_hpa) {
+Height height_of(const ZoneLimit& limit, double none, double qnh_hpa) {
   switch (limit.datum) {
     case Datum::ground:
       return {none, limit.metres};
@@ -76,7 +76,7 @@ struct AirspaceIndex::Impl {
     const double share = width > 0 ? (value - bounds.min[axis]) / width : 0;
     return std::clamp(int(share * kCells), 0, kCells - 1);
   }
-  void add(const AirspaceVolume& from, std::size_t zone, double qnh_hpa) {
+  void add(const ZoneVolume& from, std::size_t zone, double qnh_hpa) {
     Volume volume{zone,
                   height_of(from.lower, -kInfinity, qnh_hpa),
                   height_of(from.upper, kInfinity, qnh_hpa),
@@ -106,10 +106,10 @@ struct AirspaceIndex::Impl {
   }
 };
 
-AirspaceIndex::AirspaceIndex(std::vector<AirspaceZone> zones, double qnh_hpa)
+AirspaceIndex::AirspaceIndex(std::vector<Zone> zones, double qnh_hpa)
     : zones_(std::move(zones)), impl_(std::make_unique<Impl>()) {
   for (std::size_t n = 0; n < zones_.size(); ++n) {
-    for (const AirspaceVolume& volume : zones_[n].volumes) {
+    for (const ZoneVolume& volume : zones_[n].volumes) {
       impl_->add(volume, n, qnh_hpa);
     }
   }
@@ -121,7 +121,7 @@ AirspaceIndex::AirspaceIndex(AirspaceIndex&&) noexcept = default;
 AirspaceIndex& AirspaceIndex::operator=(AirspaceIndex&&) noexcept = default;
 
 void AirspaceIndex::visit(const Place& place, double from, double until,
-                          const std::function<bool(const AirspaceZone&)>& visit) const {
+                          const std::function<bool(const Zone&)>& visit) const {
   std::size_t last = zones_.size();
   // Zones across the antimeridian have longitudes beyond 180 degrees.
   for (const double turn : {0.0, 360.0, -360.0}) {
@@ -137,7 +137,7 @@ void AirspaceIndex::visit(const Place& place, double from, double until,
         continue;
       }
       last = volume.zone;
-      const AirspaceZone& zone = zones_[volume.zone];
+      const Zone& zone = zones_[volume.zone];
       if (zone.is_active(from, until) && !visit(zone)) {
         return;
       }
@@ -145,9 +145,9 @@ void AirspaceIndex::visit(const Place& place, double from, double until,
   }
 }
 
-const AirspaceZone* AirspaceIndex::find(const Place& place, double time, Restriction strict) const {
-  const AirspaceZone* found = nullptr;
-  visit(place, time, time, [&](const AirspaceZone& zone) {
+const Zone* AirspaceIndex::find(const Place& place, double time, Restriction strict) const {
+  const Zone* found = nullptr;
+  visit(place, time, time, [&](const Zone& zone) {
     found = zone.restriction <= strict ? &zone : nullptr;
     return found == nullptr;
   });

@@ -35,7 +35,7 @@ std::string name_at(const JsonNode& node, const char* key) {
 }
 
 /// Keeps the place of the feature as its name if it has neither.
-void set_names(AirspaceZone& zone, const std::string& id, const std::string& name) {
+void set_names(Zone& zone, const std::string& id, const std::string& name) {
   zone.id = id;
   zone.name = id.empty() && name.empty() ? zone.name : name;
 }
@@ -80,15 +80,14 @@ Outline ring_outline(const JsonNode& node) {
 
 /// What a feature is read into.
 struct Target {
-  AirspaceZone& zone;
+  Zone& zone;
   Doubts& doubts;
 
-  void add(Polygon polygon, const AirspaceLimit& lower, const AirspaceLimit& upper) const {
+  void add(Polygon polygon, const ZoneLimit& lower, const ZoneLimit& upper) const {
     zone.volumes.push_back({std::move(polygon), lower, upper});
     settle(zone.volumes.back(), zone.label(), doubts);
   }
-  void add_polygon(const JsonNode& rings, const AirspaceLimit& lower,
-                   const AirspaceLimit& upper) const {
+  void add_polygon(const JsonNode& rings, const ZoneLimit& lower, const ZoneLimit& upper) const {
     if (rings.size() == 0) {
       rings.wrong("a list of rings");
     }
@@ -104,14 +103,14 @@ struct Target {
       add(std::move(polygon), lower, upper);
     }
   }
-  void add_circle(const Point2& centre, const JsonNode& radius, const AirspaceLimit& lower,
-                  const AirspaceLimit& upper) const {
+  void add_circle(const Point2& centre, const JsonNode& radius, const ZoneLimit& lower,
+                  const ZoneLimit& upper) const {
     Ring ring;
     radius.told([&] { ring = circle_ring(centre, radius.number()); });
     add({std::move(ring), {}}, lower, upper);
   }
-  void add_polygons(const JsonNode& geometry, const AirspaceLimit& lower,
-                    const AirspaceLimit& upper) const {
+  void add_polygons(const JsonNode& geometry, const ZoneLimit& lower,
+                    const ZoneLimit& upper) const {
     const JsonNode coordinates = geometry.at("coordinates");
     if (text_at(geometry, "type") == "Polygon") {
       add_polygon(coordinates, lower, upper);
@@ -173,9 +172,9 @@ std::optional<std::vector<DailyHours>> hours_at(const JsonNode& schedule) {
   return hours.empty() ? std::nullopt : std::optional(hours);
 }
 
-AirspacePeriod period_of(const JsonNode& node, const Target& to) {
+ZonePeriod period_of(const JsonNode& node, const Target& to) {
   const std::string label = to.zone.label();
-  AirspacePeriod period{-kInfinity, kInfinity, {}};
+  ZonePeriod period{-kInfinity, kInfinity, {}};
   if (upper_case(text_at(node, "permanent")) != "YES") {
     period.from = period_start(text_at(node, "startDateTime"), label, to.doubts);
     period.until = period_end(text_at(node, "endDateTime"), label, to.doubts);
@@ -211,17 +210,17 @@ void read_periods(const JsonNode& node, const char* key, const Target& to) {
 }
 
 void read_ed269(const JsonNode& feature, const Target& to) {
-  AirspaceZone& zone = to.zone;
+  Zone& zone = to.zone;
   set_names(zone, text_at(feature, "identifier"), name_at(feature, "name"));
   zone.type = text_at(feature, "restriction");
   read_periods(feature, "applicability", to);
   const JsonNode geometry = feature.at("geometry");
   for (std::size_t n = 0; n < geometry.size(); ++n) {
     const JsonNode volume = geometry.at(n);
-    const AirspaceLimit lower =
+    const ZoneLimit lower =
         lower_limit(limit_at(volume, "lowerLimit", "lowerVerticalReference", "uomDimensions"),
                     zone.label(), to.doubts);
-    const AirspaceLimit upper =
+    const ZoneLimit upper =
         upper_limit(limit_at(volume, "upperLimit", "upperVerticalReference", "uomDimensions"),
                     zone.label(), to.doubts);
     const JsonNode projection = volume.at("horizontalProjection");
@@ -248,9 +247,9 @@ void read_ed318_geometry(const JsonNode& geometry, const Json& outer, const Targ
     return;
   }
   const JsonNode layer(json.is_object() ? json : kNone, geometry.place() + ".layer");
-  const AirspaceLimit lower =
+  const ZoneLimit lower =
       lower_limit(limit_at(layer, "lower", "lowerReference", "uom"), to.zone.label(), to.doubts);
-  const AirspaceLimit upper =
+  const ZoneLimit upper =
       upper_limit(limit_at(layer, "upper", "upperReference", "uom"), to.zone.label(), to.doubts);
   if (type == "Polygon" || type == "MultiPolygon") {
     to.add_polygons(geometry, lower, upper);
@@ -297,7 +296,7 @@ void read_faa(const JsonNode& feature, const Target& to) {
 
 void read_json_feature(const JsonNode& feature, Airspace::Format format, Airspace& to,
                        Doubts& doubts) {
-  AirspaceZone zone;
+  Zone zone;
   zone.name = feature.place();  // unless it has one
   const Target target{zone, doubts};
   const auto read = [&] {

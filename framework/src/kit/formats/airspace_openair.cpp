@@ -188,7 +188,7 @@ class OpenAirReader {
       return;
     }
     open_ = false;
-    AirspaceZone zone;
+    Zone zone;
     zone.id = id_.text;
     zone.name = label();
     zone.type = kind_.given ? type_ + " " + kind_.text : type_;
@@ -205,8 +205,8 @@ class OpenAirReader {
     for (Ring& circle : circles_) {
       polygons.push_back({std::move(circle), {}});
     }
-    const AirspaceLimit lower = lower_limit(openair_limit(lower_.text), zone.label(), doubts_);
-    const AirspaceLimit upper = upper_limit(openair_limit(upper_.text), zone.label(), doubts_);
+    const ZoneLimit lower = lower_limit(openair_limit(lower_.text), zone.label(), doubts_);
+    const ZoneLimit upper = upper_limit(openair_limit(upper_.text), zone.label(), doubts_);
     for (Polygon& polygon : polygons) {
       zone.volumes.push_back({std::move(polygon), lower, upper});
       settle(zone.volumes.back(), zone.label(), doubts_);
@@ -227,8 +227,8 @@ class OpenAirReader {
   }
 
   /// None: always active.
-  std::vector<AirspacePeriod> periods(const std::string& label) {
-    std::vector<AirspacePeriod> periods;
+  std::vector<ZonePeriod> periods(const std::string& label) {
+    std::vector<ZonePeriod> periods;
     for (const std::string& text : activations_) {
       const std::size_t slash = text.find('/');
       const std::string start = text.substr(0, slash);

@@ -77,10 +77,10 @@ struct LimitText {
   std::string reference;  ///< AGL, SFC, GND, AMSL, MSL, STD, WGS84, W84
   std::string found;      ///< for the note, if the limit is unknown
 };
-AirspaceLimit lower_limit(const LimitText& text, const std::string& zone, Doubts& doubts);
-AirspaceLimit upper_limit(const LimitText& text, const std::string& zone, Doubts& doubts);
+ZoneLimit lower_limit(const LimitText& text, const std::string& zone, Doubts& doubts);
+ZoneLimit upper_limit(const LimitText& text, const std::string& zone, Doubts& doubts);
 /// Removes limits that contradict each other.
-void settle(AirspaceVolume& volume, const std::string& zone, Doubts& doubts);
+void settle(ZoneVolume& volume, const std::string& zone, Doubts& doubts);
 
 /// The restriction of a class of airspace, or of a kind of zone; keep_out, and reported, if it is
 /// unknown.
@@ -96,7 +96,7 @@ std::optional<DailyHours::Event> sun_event(std::string_view name);
 double period_start(const std::string& text, const std::string& zone, Doubts& doubts);
 double period_end(const std::string& text, const std::string& zone, Doubts& doubts);
 /// Removes the ends of a period that ends before it starts.
-void settle(AirspacePeriod& period, const std::string& zone, Doubts& doubts);
+void settle(ZonePeriod& period, const std::string& zone, Doubts& doubts);
 
 std::string upper_case(std::string_view text);
 /// The text without control characters and broken UTF-8.

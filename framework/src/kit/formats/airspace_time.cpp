@@ -57,10 +57,10 @@ struct Where {
   double margin = 0;
 };
 
-Where where(const AirspaceZone& zone) {
+Where where(const Zone& zone) {
   Point2 low{kInfinity, kInfinity};
   Point2 high{-kInfinity, -kInfinity};
-  for (const AirspaceVolume& volume : zone.volumes) {
+  for (const ZoneVolume& volume : zone.volumes) {
     for (const Point2& p : volume.polygon.outline) {
       low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
       high = {std::max(high[0], p[0]), std::max(high[1], p[1])};
@@ -97,8 +97,7 @@ bool is_active_on(const DailyHours& hours, long day, const Where& where, double 
   return *starts <= until && *ends >= from;
 }
 
-bool is_active_in(const AirspacePeriod& period, const AirspaceZone& zone, double from,
-                  double until) {
+bool is_active_in(const ZonePeriod& period, const Zone& zone, double from, double until) {
   from = std::max(from, period.from);
   until = std::min(until, period.until);
   if (from > until) {
@@ -177,9 +176,9 @@ std::optional<double> sun_time(Event event, long day, const Point2& lonlat) {
   return time;
 }
 
-bool AirspaceZone::is_active(double from, double until) const {
+bool Zone::is_active(double from, double until) const {
   return periods.empty() ||
-         std::any_of(periods.begin(), periods.end(), [&](const AirspacePeriod& period) {
+         std::any_of(periods.begin(), periods.end(), [&](const ZonePeriod& period) {
            return is_active_in(period, *this, from, until);
          });
 }
@@ -242,7 +241,7 @@ double period_end(const std::string& text, const std::string& zone, Doubts& doub
   return period_time(text, true, zone, doubts);
 }
 
-void settle(AirspacePeriod& period, const std::string& zone, Doubts& doubts) {
+void settle(ZonePeriod& period, const std::string& zone, Doubts& doubts) {
   if (period.from > period.until) {
     doubts.add("period that ends before it starts, always active", zone);
     period = {-kInfinity, kInfinity, {}};

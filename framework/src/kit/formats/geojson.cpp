@@ -153,6 +153,25 @@ std::optional<double> GeoFeature::metres(const std::string& property) const {
   return number;
 }
 
+Restriction role_of(const GeoFeature& feature) {
+  const std::string role = feature.text("role");
+  return role == "keep_in"    ? Restriction::keep_in
+         : role == "keep_out" ? Restriction::keep_out
+                              : Restriction::unspecified;
+}
+
+Zone zone_of(const GeoFeature& feature) {
+  Zone zone;
+  zone.name = feature.id;
+  zone.restriction = role_of(feature);
+  zone.volumes.push_back({feature.polygon, {}, {}});
+  if (zone.restriction != Restriction::unspecified) {
+    zone.volumes.front().lower = ZoneLimit::sea(feature.metres("floor_m"));
+    zone.volumes.front().upper = ZoneLimit::sea(feature.metres("ceiling_m"));
+  }
+  return zone;
+}
+
 std::string GeoJson::skipped_text() const {
   return std::to_string(skipped) + " features without an area skipped" +
          (flat.empty() ? "" : " (" + names_text(flat) + ")");

@@ -165,19 +165,19 @@ AltitudeFrame frame_of(int mav_frame) {
   }
 }
 
-void check_zone(MissionZone& zone) {
-  if (zone.polygon.outline.empty()) {
-    expect_position(zone.centre[0], zone.centre[1]);
-    if (!(zone.radius_m > 0 && zone.radius_m <= 1e7)) {
-      throw Error("expected a radius above 0 m, found " + number_text(zone.radius_m));
+void check_volume(ZoneVolume& volume) {
+  if (volume.polygon.outline.empty()) {
+    expect_position(volume.centre[0], volume.centre[1]);
+    if (!(volume.radius_m > 0 && volume.radius_m <= 1e7)) {
+      throw Error("expected a radius above 0 m, found " + number_text(volume.radius_m));
     }
     return;
   }
-  zone.polygon.outline = without_repeats(zone.polygon.outline);
-  for (Ring& hole : zone.polygon.holes) {
+  volume.polygon.outline = without_repeats(volume.polygon.outline);
+  for (Ring& hole : volume.polygon.holes) {
     hole = without_repeats(hole);
   }
-  if (const std::string problem = polygon_problem(zone.polygon); !problem.empty()) {
+  if (const std::string problem = polygon_problem(volume.polygon); !problem.empty()) {
     throw Error(problem);
   }
 }

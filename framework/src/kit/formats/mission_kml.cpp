@@ -165,8 +165,9 @@ class KmlReader {
   /// An extruded polygon above sea level extends up to its corners; others apply at every height.
   void add_polygon(const pugi::xml_node& node) {
     const Placemark placemark(node);
-    MissionZone zone;
+    Zone zone;
     zone.name = placemark.name;
+    ZoneVolume volume;
     std::vector<double> heights;
     bool has_outline = false;
     for (const pugi::xml_node& boundary : node.children()) {
@@ -175,37 +176,39 @@ class KmlReader {
           throw Error("a Polygon has one outerBoundaryIs");
         }
         has_outline = true;
-        zone.polygon.outline = ring_of(boundary, heights);
+        volume.polygon.outline = ring_of(boundary, heights);
       } else if (local_name(boundary) == "innerBoundaryIs") {
-        zone.polygon.holes.push_back(ring_of(boundary, heights));
+        volume.polygon.holes.push_back(ring_of(boundary, heights));
       }
     }
     if (!has_outline) {
       throw Error("the Polygon has no outerBoundaryIs");
     }
-    if (is_flat(zone.polygon)) {
+    if (is_flat(volume.polygon)) {
       mission_.flat.push_back(zone.name.empty() ? "a Polygon without a name" : zone.name);
       return;
     }
-    zone.floor_m = placemark.metres("floor_m");
-    zone.ceiling_m = placemark.metres("ceiling_m");
+    volume.lower = ZoneLimit::sea(placemark.metres("floor_m"));
+    volume.upper = ZoneLimit::sea(placemark.metres("ceiling_m"));
     const bool extruded = text_of(node, "extrude") == "1" || text_of(node, "extrude") == "true";
     const auto role = placemark.data.find("role");
-    zone.has_role = role != placemark.data.end();
-    if (zone.has_role) {
+    zone.restriction = role == placemark.data.end() ? Restriction::unspecified
+                       : role->second == "keep_in"  ? Restriction::keep_in
+                                                    : Restriction::keep_out;
+    if (role != placemark.data.end()) {
       if (role->second != "keep_in" && role->second != "keep_out") {
         throw Error("expected the role keep_in or keep_out, found '" + role->second + "'");
       }
-      zone.keep_in = role->second == "keep_in";
     } else if (extruded && altitude_mode(node) == "absolute") {
       const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
       if (*high - *low > 0.01) {
         throw Error("the polygon's corners have different altitudes: a zone has one ceiling");
       }
-      zone.ceiling_m = *high;
+      volume.upper = ZoneLimit::sea(*high);
     }
-    flat_ += !zone.floor_m && !zone.ceiling_m;
-    check_zone(zone);
+    flat_ += volume.lower == ZoneLimit{} && volume.upper == ZoneLimit{};
+    check_volume(volume);
+    zone.volumes.push_back(std::move(volume));
     mission_.zones.push_back(std::move(zone));
   }
 

@@ -32,7 +32,7 @@ void expect_altitude(double altitude_m);
 /// The altitude frame of a global MAV_FRAME number; throws Error for others.
 AltitudeFrame frame_of(int mav_frame);
 /// Drops repeated points; throws Error for an invalid polygon.
-void check_zone(MissionZone& zone);
+void check_volume(ZoneVolume& volume);
 
 /// Mission commands in the numbering of the autopilots, one after the other.
 class CommandList {

@@ -82,9 +82,14 @@ Ring read_corners(const Node& corners) {
   return ring;
 }
 
-void add_zone(const Node& from, MissionZone zone, MissionFile& mission) {
-  zone.name = from.place();
-  from.told([&] { check_zone(zone); });
+/// `name` is our own key beside those of ground stations, which ignore it.
+void add_zone(const Node& from, bool keep_in, ZoneVolume volume, MissionFile& mission) {
+  from.told([&] { check_volume(volume); });
+  const bool is_named = from.has("name") && from.at("name").json().is_string();
+  Zone zone;
+  zone.name = is_named ? from.at("name").text() : from.place();
+  zone.restriction = keep_in ? Restriction::keep_in : Restriction::keep_out;
+  zone.volumes.push_back(std::move(volume));
   mission.zones.push_back(std::move(zone));
 }
 
@@ -93,10 +98,7 @@ void read_fence(const Node& fence, MissionFile& mission) {
   if (fence.at("version").whole(2) == 1) {  // one polygon, keep-in
     const Node polygon = fence.at("polygon");
     if (polygon.size() > 0) {
-      MissionZone zone;
-      zone.keep_in = true;
-      zone.polygon.outline = read_corners(polygon);
-      add_zone(polygon, std::move(zone), mission);
+      add_zone(polygon, true, {{read_corners(polygon), {}}, {}, {}}, mission);
     }
     return;
   }
@@ -104,23 +106,21 @@ void read_fence(const Node& fence, MissionFile& mission) {
   for (std::size_t n = 0; n < polygons.size(); ++n) {
     const Node polygon = polygons.at(n);
     polygon.at("version").expect_version(1, 1);
-    MissionZone zone;
-    zone.keep_in = polygon.at("inclusion").boolean();
-    zone.polygon.outline = read_corners(polygon.at("polygon"));
-    if (zone.polygon.outline.size() < 3) {
+    const bool keep_in = polygon.at("inclusion").boolean();
+    Ring outline = read_corners(polygon.at("polygon"));
+    if (outline.size() < 3) {
       polygon.at("polygon").wrong("three corners or more");
     }
-    add_zone(polygon, std::move(zone), mission);
+    add_zone(polygon, keep_in, {{std::move(outline), {}}, {}, {}}, mission);
   }
   const Node circles = fence.at("circles");
   for (std::size_t n = 0; n < circles.size(); ++n) {
     const Node circle = circles.at(n);
     circle.at("version").expect_version(1, 1);
-    MissionZone zone;
-    zone.keep_in = circle.at("inclusion").boolean();
-    zone.centre = circle.at("circle").at("center").place_on_earth();
-    zone.radius_m = circle.at("circle").at("radius").number();
-    add_zone(circle, std::move(zone), mission);
+    const bool keep_in = circle.at("inclusion").boolean();
+    const Point2 centre = circle.at("circle").at("center").place_on_earth();
+    add_zone(circle, keep_in, {{}, {}, {}, centre, circle.at("circle").at("radius").number()},
+             mission);
   }
 }
 

@@ -86,13 +86,8 @@ class FenceReader {
     if (command == 5000) {  // return point after a fence breach
       ++returns_;
     } else if (command == 5003 || command == 5004) {
-      MissionZone zone;
-      zone.keep_in = command == 5003;
-      zone.centre = {row.lon(), row.lat()};
-      zone.radius_m = row.fields[4];
-      zone.name = name;
-      check_zone(zone);
-      mission_.zones.push_back(std::move(zone));
+      start(name, command == 5003);
+      add_zone({{}, {}, {}, {row.lon(), row.lat()}, row.fields[4]});
     } else {
       add_corner(row, command, name);
     }
@@ -109,15 +104,24 @@ class FenceReader {
   }
 
  private:
+  void start(const std::string& name, bool keep_in) {
+    zone_ = Zone{};
+    zone_.name = name;
+    zone_.restriction = keep_in ? Restriction::keep_in : Restriction::keep_out;
+  }
+  void add_zone(ZoneVolume volume) {
+    check_volume(volume);
+    zone_.volumes = {std::move(volume)};
+    mission_.zones.push_back(zone_);
+  }
   void add_corner(const Row& row, int command, const std::string& name) {
     const double count = row.fields[4];
     if (!(count >= 3 && count <= 1e6 && count == std::floor(count))) {
       throw Error("expected the number of the polygon's corners, 3 or more, as param1");
     }
     if (missing_ == 0) {
-      zone_ = MissionZone{};
-      zone_.keep_in = command == 5001;
-      zone_.name = name;
+      start(name, command == 5001);
+      outline_.clear();
       command_ = command;
       corners_ = missing_ = std::size_t(count);
     } else if (std::size_t(count) != corners_) {
@@ -125,15 +129,15 @@ class FenceReader {
                   " corners, this one gives " + std::to_string(std::size_t(count)));
     }
     expect_position(row.lon(), row.lat());
-    zone_.polygon.outline.push_back({row.lon(), row.lat()});
+    outline_.push_back({row.lon(), row.lat()});
     if (--missing_ == 0) {
-      check_zone(zone_);
-      mission_.zones.push_back(zone_);
+      add_zone({{outline_, {}}, {}, {}});
     }
   }
 
   MissionFile& mission_;
-  MissionZone zone_;
+  Zone zone_;
+  Ring outline_;
   int command_ = 0;
   std::size_t corners_ = 0;
   std::size_t missing_ = 0;

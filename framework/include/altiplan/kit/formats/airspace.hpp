@@ -5,74 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/layers/polygon.hpp"
+#include "altiplan/kit/formats/zone.hpp"
 
 /// \file Airspace as authorities and pilots' programs publish it, in one representation. What a
 /// file leaves unknown is closed, and listed; where a zone lies must be known.
 namespace altiplan::kit {
 
-/// What a zone demands of a flight: to stay out, a permission, or to be informed.
-enum class Restriction { keep_out, ask, inform };
-
-struct AirspaceLimit {
-  /// Reference of the height; none: the zone has no limit in this direction. `standard` is the
-  /// pressure altitude of flight levels.
-  enum class Datum { none, ground, sea, standard };
-  Datum datum = Datum::none;
-  double metres = 0;
-
-  bool operator==(const AirspaceLimit&) const = default;
-};
-
-/// Upright, over a polygon in longitude and latitude, with straight edges in these. Circles and
-/// arcs have become edges that never cut into the volume, and are at most 1.1 m off.
-struct AirspaceVolume {
-  Polygon polygon;
-  AirspaceLimit lower;
-  AirspaceLimit upper;
-};
-
-/// Hours of some days of the week, in UTC; they end on the next day if not after they begin.
-struct DailyHours {
-  /// Civil twilight begins and ends at dawn and dusk.
-  enum class Event { clock, sunrise, sunset, dawn, dusk };
-  struct Edge {
-    Event event = Event::clock;
-    double seconds = 0;  ///< since midnight, or after the event
-  };
-  unsigned days = 127;  ///< bit 0: Monday, … bit 6: Sunday
-  Edge from;
-  Edge until;
-};
-
-/// Active at these hours from one time to another (seconds since 1970-01-01 UTC), or always in
-/// between, if there are no hours.
-struct AirspacePeriod {
-  double from;
-  double until;
-  std::vector<DailyHours> hours;
-};
-
-struct ALTIPLAN_API AirspaceZone {
-  std::string id;
-  std::string name;
-  std::string type;  ///< the source's own word: "PROHIBITED", "CTR", "D TMA"
-  Restriction restriction = Restriction::keep_out;
-  std::vector<AirspaceVolume> volumes;  ///< at least one
-  std::vector<AirspacePeriod> periods;  ///< none: always active
-
-  /// "EGD901 (TEST DANGER)"
-  std::string label() const;
-  /// True if the zone is active at some time of [from, until]. Hours that depend on the sun are
-  /// taken at the middle of the zone, longer at both ends by two minutes and by what the sun takes
-  /// to cross the zone; where it does not rise or set, for the whole day.
-  bool is_active(double from, double until) const;
-};
-
 struct Airspace {
   enum class Format { ed269, ed318, aixm, openair, faa };
   Format format = Format::ed269;
-  std::vector<AirspaceZone> zones;
+  std::vector<Zone> zones;
   /// What is closed because the file leaves it unknown, and what was skipped, one per line.
   std::vector<std::string> notes;
 };

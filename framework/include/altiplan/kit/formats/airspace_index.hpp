@@ -22,23 +22,22 @@ class ALTIPLAN_API AirspaceIndex {
   };
 
   /// `qnh_hpa`: of flight levels.
-  explicit AirspaceIndex(std::vector<AirspaceZone> zones, double qnh_hpa = 1013.25);
+  explicit AirspaceIndex(std::vector<Zone> zones, double qnh_hpa = 1013.25);
   ~AirspaceIndex();
   AirspaceIndex(AirspaceIndex&&) noexcept;
   AirspaceIndex& operator=(AirspaceIndex&&) noexcept;
 
-  const std::vector<AirspaceZone>& zones() const { return zones_; }
+  const std::vector<Zone>& zones() const { return zones_; }
   /// Calls visit(zone) for each zone that holds the place, limits included, and is active at some
   /// time of [from, until], until it returns false.
   void visit(const Place& place, double from, double until,
-             const std::function<bool(const AirspaceZone&)>& visit) const;
+             const std::function<bool(const Zone&)>& visit) const;
   /// The first of them that is at least as strict, or null.
-  const AirspaceZone* find(const Place& place, double time,
-                           Restriction strict = Restriction::inform) const;
+  const Zone* find(const Place& place, double time, Restriction strict = Restriction::inform) const;
 
  private:
   struct Impl;
-  std::vector<AirspaceZone> zones_;
+  std::vector<Zone> zones_;
   std::unique_ptr<Impl> impl_;
 };
 }  // namespace altiplan::kit

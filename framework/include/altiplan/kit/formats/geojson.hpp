@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/layers/polygon.hpp"
+#include "altiplan/kit/formats/zone.hpp"
 
 namespace altiplan::kit {
 
@@ -35,6 +35,12 @@ struct ALTIPLAN_API GeoJson {
 /// Reads GeoJSON (RFC 7946). Throws Error, naming the feature, for damaged text, rings that are
 /// open or intersect themselves, and coordinates out of range.
 ALTIPLAN_API GeoJson read_geojson(const std::string& file);
+
+/// The property `role` of zones that we wrote, keep_in or keep_out; unspecified for others.
+ALTIPLAN_API Restriction role_of(const GeoFeature& feature);
+/// The feature as a zone, without the hours that other properties may give; with a role, its
+/// limits.
+ALTIPLAN_API Zone zone_of(const GeoFeature& feature);
 
 /// Throws Error, listing the existing names, for a property that no feature has: most likely a
 /// typing error, which would otherwise silently drop data.

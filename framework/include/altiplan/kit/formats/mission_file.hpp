@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/layers/polygon.hpp"
+#include "altiplan/kit/formats/zone.hpp"
 
 /// \file Missions of ground stations in one representation: QGroundControl's `.plan`, the `QGC WPL
 /// 110` text of `.waypoints` and `.txt`, KML, and the routes of GPX and GeoJSON.
@@ -58,19 +58,6 @@ struct MissionMove {
   std::size_t after = 0;  ///< how many items come before it
 };
 
-/// An area that must not be left (`keep_in`) or entered: a polygon, or a circle where the outline
-/// is empty.
-struct MissionZone {
-  bool keep_in = false;
-  bool has_role = true;  ///< false: the file does not specify the role (KML)
-  Polygon polygon;       ///< longitude, latitude
-  Point2 centre{0, 0};
-  double radius_m = 0;
-  std::optional<double> floor_m;  ///< above sea level
-  std::optional<double> ceiling_m;
-  std::string name;
-};
-
 struct MissionFile {
   enum class Format { qgc_plan, waypoints, kml, gpx, geojson };
   Format format = Format::qgc_plan;
@@ -81,7 +68,7 @@ struct MissionFile {
   std::vector<MissionItem> items;
   std::vector<MissionMove> moves;  ///< not part of the items
   std::string route_problem;       ///< why the items are not a route, "" where they are
-  std::vector<MissionZone> zones;
+  std::vector<Zone> zones;
   std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
   /// Skipped parts, one per line ("4 commands that fly nowhere skipped (178, 203)").
   std::vector<std::string> notes;

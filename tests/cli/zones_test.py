@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""zones_test.py PROGRAM SOURCES: names, limits and roles of zones from a file through an export, and
+back from it to a verdict."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from plan_case import TERRAIN, item, plan_of
+
+PROGRAM = sys.argv[1]
+FRAME = "frame: {origin_lonlat: [25, 60]}\n"
+# A keep-in zone around a named keep-out zone that begins 150 m above the sea.
+ZONES = FRAME + """altiplan: 1
+environment:
+  - zones:
+      list:
+        - {id: county, kind: keep_in, ceiling_m: 900,
+           polygon: {outline_lonlat: [[25, 60], [25.1, 60], [25.1, 60.05], [25, 60.05]]}}
+        - {id: hospital, floor_m: 150, ceiling_m: 400,
+           polygon: {outline_lonlat: [[25.04, 60.02], [25.05, 60.02], [25.05, 60.03], [25.04, 60.03]]}}
+        - {id: mast, cylinder: {at_lonlat: [25.08, 60.04], radius_m: 100}}
+volume: {min_m: [0, 0, 0], max_m: [6000, 6000, 800]}
+start: {at_lonlat: [25.01, 60.01, 100]}
+goal: {at_lonlat: [25.09, 60.01, 100], tolerance_m: 5}
+"""
+
+
+SCENARIO = FRAME + """altiplan: 1
+environment:
+  - zones: {file: FILE}
+    id: fence
+volume: {min_m: [-9000, -9000, 0], max_m: [9000, 9000, 2000]}
+start: {at_lonlat: [25.03, 60.025, HEIGHT]}
+goal: {at_lonlat: [25.06, 60.025, HEIGHT], tolerance_m: 5}
+"""
+GPX = """<gpx version="1.1"><rte><rtept lat="60.025" lon="25.03"><ele>HEIGHT</ele></rtept>
+<rtept lat="60.025" lon="25.06"><ele>HEIGHT</ele></rtept></rte></gpx>
+"""
+
+
+class Zones(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write("zones.yaml", ZONES)
+        self.write("pipeline.yaml", "altiplan: 1\nscenario: zones.yaml\nsteps:\n"
+                   "  - plan: theta_star\n    with: {cell_m: [100, 100, 50]}\n")
+        self.call("run", "pipeline.yaml", "--out", "result.json")
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+
+    def call(self, *arguments, code=0):
+        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
+                             timeout=60)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        return run.stdout, run.stderr
+
+    def verdict(self, file, height, code):
+        """On the straight leg past 'hospital' among the zones of the file."""
+        self.write("read.yaml", SCENARIO.replace("FILE", file).replace("HEIGHT", str(height)))
+        self.write("leg.gpx", GPX.replace("HEIGHT", str(height)))
+        return self.call("check", "leg.gpx", "--scenario", "read.yaml", code=code)[0]
+
+    def test_a_map_is_read_back_as_it_was_written(self):
+        for file in ("map.kml", "map.geojson"):
+            with self.subTest(file):
+                self.call("export", "result.json", "-o", file)
+                self.verdict(file, 120, code=0)  # below its floor
+                self.assertIn("'hospital' of 'fence'", self.verdict(file, 300, code=1))
+                self.verdict(file, 410, code=0)  # above its ceiling
+                self.assertIn("of 'fence'", self.verdict(file, 950, code=1))  # above the county's
+
+    def test_a_plan_keeps_the_names_of_its_fence(self):
+        self.call("export", "result.json", "-o", "route.plan")
+        fence = json.loads((self.folder / "route.plan").read_text())["geoFence"]
+        self.assertEqual([zone.get("name") for zone in fence["polygons"] + fence["circles"]],
+                         ["county", "hospital", "mast"])
+
+    def test_a_verdict_names_the_zone_of_a_fence(self):
+        plan = plan_of([])
+        plan["mission"]["items"] = [item(point, n + 1) for n, point in
+                                    enumerate([[-84.38, 36.48, 1500], [-84.20, 36.66, 1500]])]
+        circle = {"center": [36.57, -84.29], "radius": 500}
+        plan["geoFence"]["circles"] = [
+            {"version": 1, "inclusion": False, "circle": circle, "name": "hospital"}]
+        self.write("mission.plan", json.dumps(plan))
+        verdict, _ = self.call("check", "mission.plan", "--terrain", TERRAIN, code=1)
+        self.assertIn("'hospital' of 'fence of the mission'", verdict)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
