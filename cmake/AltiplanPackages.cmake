@@ -76,11 +76,15 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
 set(same_version "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 
-# What the package of a library in a folder of the system's owes, which CPack writes for libraries
+# What the package of libraries in a folder of the system's owes, which CPack writes for libraries
 # with a version only.
 file(WRITE ${packages}/triggers "activate-noawait ldconfig\n")
-get_target_property(soversion altiplan SOVERSION)
-file(WRITE ${packages}/shlibs "libaltiplan ${soversion} altiplan (>= ${PROJECT_VERSION})\n")
+file(WRITE ${packages}/shlibs "")
+foreach(library IN ITEMS altiplan altiplan_kit altiplan_formats)
+  get_target_property(file ${library} OUTPUT_NAME)
+  get_target_property(soversion ${library} SOVERSION)
+  file(APPEND ${packages}/shlibs "lib${file} ${soversion} altiplan (>= ${PROJECT_VERSION})\n")
+endforeach()
 
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_NAME altiplan)
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_CONTROL_EXTRA "${packages}/triggers;${packages}/shlibs")
@@ -93,7 +97,7 @@ exactly and compared in studies. Everything that varies is a plugin composed
 in YAML: the layers of the world, the rules that a route keeps, planners,
 smoothers and local planners.
 .
-This package holds the program, its library, and the plugins that need no
+This package holds the program, its libraries, and the plugins that need no
 large library.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME altiplan-dev)

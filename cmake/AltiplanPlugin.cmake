@@ -7,12 +7,14 @@ set(ALTIPLAN_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
 set(ALTIPLAN_PLUGIN_CHECKSUM ${CMAKE_CURRENT_LIST_DIR}/plugin_checksum.cpp)
 
 # altiplan_plugin_library(TARGET): how a library of plugins is linked. One exported symbol; never
-# unloaded; a checksum of what is loaded of it, filled in after linking.
+# unloaded; a checksum of what is loaded of it, filled in after linking. It needs only those of altiplan's
+# libraries that it uses: what uses the SDK alone works with later versions too.
 function(altiplan_plugin_library target)
-  target_link_libraries(${target} PRIVATE altiplan::sdk)
+  target_link_libraries(${target} PRIVATE altiplan::sdk altiplan::kit altiplan::formats)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${ALTIPLAN_PLUGIN_EXPORTS})
   target_link_options(${target} PRIVATE
-    -Wl,--version-script=${ALTIPLAN_PLUGIN_EXPORTS} -Wl,-z,nodelete -Wl,--build-id)
+    -Wl,--version-script=${ALTIPLAN_PLUGIN_EXPORTS} -Wl,-z,nodelete -Wl,--build-id
+    -Wl,--as-needed)
   altiplan_add_checksum(${target})
 endfunction()
 

@@ -202,7 +202,7 @@ void download(Link& link, const Vehicle& vehicle, PlanType type, host::Plan& pla
   std::vector<PlanItem> items = plan_items(downloaded(link, vehicle, type, stop));
   if (begins_with_home(vehicle, type) && !items.empty()) {
     const std::array<double, 7>& home = items.front().params;
-    plan.home = kit::MissionPoint{home[5], home[4], home[6]};
+    plan.home = formats::MissionPoint{home[5], home[4], home[6]};
     items.erase(items.begin());
   }
   (type == PlanType::mission ? plan.items

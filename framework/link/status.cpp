@@ -132,8 +132,8 @@ Status read_status(Link& link, const Vehicle& vehicle, Time timeout, const std::
   return status;
 }
 
-std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
-                                           const std::stop_token& stop) {
+std::optional<formats::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
+                                               const std::stop_token& stop) {
   const Time end = time_now() + timeout;
   Time ask_at = time_now();
   while (time_now() < end && !stop.stop_requested()) {
@@ -144,7 +144,8 @@ std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, T
     const std::optional<Packet> packet = link.receive(kStatusSlice);
     const bool is_ours = packet && packet->sender == vehicle.address;
     if (const auto* home = is_ours ? std::get_if<HomePosition>(&packet->message) : nullptr) {
-      return kit::MissionPoint{home->longitude / 1e7, home->latitude / 1e7, home->altitude / 1e3};
+      return formats::MissionPoint{home->longitude / 1e7, home->latitude / 1e7,
+                                   home->altitude / 1e3};
     }
   }
   return std::nullopt;

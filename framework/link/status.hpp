@@ -4,7 +4,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "link/link.hpp"
 
 namespace altiplan::link {
@@ -22,8 +22,8 @@ struct Status {
 Status read_status(Link& link, const Vehicle& vehicle, Time timeout, const std::stop_token& stop);
 
 /// Home as the vehicle reports it; none if it does not in time.
-std::optional<kit::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
-                                           const std::stop_token& stop);
+std::optional<formats::MissionPoint> read_home(Link& link, const Vehicle& vehicle, Time timeout,
+                                               const std::stop_token& stop);
 
 /// A line each: the vehicle, its mode, position, battery and mission.
 std::string in_words(const Status& status);

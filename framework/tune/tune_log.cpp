@@ -11,7 +11,7 @@
 #include <set>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
 #include "study/workers/job_record.hpp"
@@ -47,7 +47,7 @@ std::string line_of(const RunId& id, const std::string& parameters, const Scored
 /// "" if it does not exist.
 std::string text_of(const fs::path& file) {
   return host::is_there(file)
-             ? kit::read_file(file.string(), std::numeric_limits<std::uintmax_t>::max())
+             ? formats::read_file(file.string(), std::numeric_limits<std::uintmax_t>::max())
              : "";
 }
 

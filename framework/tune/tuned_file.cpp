@@ -5,7 +5,7 @@
 #include <charconv>
 #include <optional>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
@@ -244,7 +244,7 @@ std::string scalar_text(const std::string& text) {
 
 std::string tuned_text(const host::Config& config, const std::vector<std::string>& assignments,
                        const fs::path& folder) {
-  Document document(kit::read_file(config.pipeline_path.string()));
+  Document document(formats::read_file(config.pipeline_path.string()));
   const fs::path from = config.pipeline_path.parent_path();
   const fs::path to = fs::absolute(folder / "").lexically_normal().parent_path();
   std::vector<std::string> all = assignments;

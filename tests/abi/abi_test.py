@@ -76,6 +76,7 @@ class Sdk:
                  f"-DCMAKE_INSTALL_PREFIX={self.prefix}", "-DCMAKE_INSTALL_LIBDIR=lib", *launcher])
         quietly(["cmake", "--build", build, "--parallel", os.cpu_count(),
                  "--target", "altiplan", "altiplan_conformance",
+                 *(["altiplan_formats"] if (tree / "framework/src/formats").exists() else []),
                  *(["altiplan_checksum"] if (tree / "tools/checksum").exists() else [])],
                 env=environment)
         shutil.rmtree(self.prefix, ignore_errors=True)

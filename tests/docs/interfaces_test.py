@@ -114,6 +114,7 @@ def main():
     kit = (PAGES / "kit.md").read_text()
     root = SOURCE / "framework/include/altiplan/kit"
     headers = {str(file.relative_to(root)) for file in root.glob("**/*.hpp")}
+    headers |= {f"formats/{file.name}" for file in (root.parent / "formats").glob("*.hpp")}
     named = set()
     for section in re.split(r"^(?=## )", kit, flags=re.MULTILINE):
         heading, _, rows = section.partition("\n")

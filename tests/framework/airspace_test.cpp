@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "altiplan/kit/formats/airspace.hpp"
+#include "altiplan/formats/airspace.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,28 +7,28 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
+#include "altiplan/formats/airspace_index.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "altiplan/geometry.hpp"
-#include "altiplan/kit/formats/airspace_index.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::testing {
 namespace {
 
-using kit::Airspace;
-using kit::AirspaceIndex;
-using kit::Restriction;
-using kit::Zone;
-using kit::ZoneLimit;
+using formats::Airspace;
+using formats::AirspaceIndex;
+using formats::Restriction;
+using formats::Zone;
+using formats::ZoneLimit;
 using Datum = ZoneLimit::Datum;
 
 Airspace read(const std::string& text, const std::string& file = "file") {
-  return kit::read_airspace(file, text).value();
+  return formats::read_airspace(file, text).value();
 }
 
 Airspace given(const std::filesystem::path& folder, const std::string& name) {
-  return read(kit::read_file((folder / name).string()), name);
+  return read(formats::read_file((folder / name).string()), name);
 }
 
 std::string refusal(const std::string& text) {
@@ -46,7 +46,8 @@ bool noted(const Airspace& airspace, const std::string& part) {
 }
 
 bool holds(const Airspace& airspace, const AirspaceIndex::Place& place, const char* time) {
-  return AirspaceIndex(airspace.zones).find(place, kit::parse_iso_time(time).value()) != nullptr;
+  return AirspaceIndex(airspace.zones).find(place, formats::parse_iso_time(time).value()) !=
+         nullptr;
 }
 
 /// A zone of ED-269 with parts replaced.
@@ -99,7 +100,7 @@ TEST(Airspace, ReadsTheGivenFilesWhole) {
   EXPECT_TRUE(noted(sample, "terrain, skipped: 'Lake Tahoe'"));
   EXPECT_TRUE(noted(sample, "Ask on 122.8"));
   EXPECT_EQ(given(folder, "openair_slovenia.txt").zones.size(), 58U);
-  EXPECT_TRUE(refusal(kit::read_file((folder / "openair_broken.txt").string()))
+  EXPECT_TRUE(refusal(formats::read_file((folder / "openair_broken.txt").string()))
                   .starts_with("file:5: DC needs a centre"));
 }
 
@@ -251,15 +252,15 @@ TEST(Airspace, AnOutlineThatMeetsItselfIsClosedInAllLoops) {
 
 // Against the tables of the U.S. Naval Observatory, to the minute.
 TEST(Airspace, TheSunRisesAndSets) {
-  using Event = kit::DailyHours::Event;
-  const auto day = [](const char* date) { return long(*kit::parse_iso_time(date) / 86400); };
-  const auto off = [&](Event event, const char* date, const kit::Point2& at, const char* time) {
-    return std::abs(*kit::sun_time(event, day(date), at) - *kit::parse_iso_time(time));
+  using Event = formats::DailyHours::Event;
+  const auto day = [](const char* date) { return long(*formats::parse_iso_time(date) / 86400); };
+  const auto off = [&](Event event, const char* date, const formats::Point2& at, const char* time) {
+    return std::abs(*formats::sun_time(event, day(date), at) - *formats::parse_iso_time(time));
   };
-  const kit::Point2 greenwich{0, 51.4779};
+  const formats::Point2 greenwich{0, 51.4779};
   EXPECT_LT(off(Event::sunrise, "2024-03-20", greenwich, "2024-03-20T06:03Z"), 90);
   EXPECT_LT(off(Event::sunset, "2024-06-20", greenwich, "2024-06-20T20:21Z"), 90);
-  EXPECT_FALSE(kit::sun_time(Event::sunset, day("2024-06-20"), {20, 70}).has_value());
+  EXPECT_FALSE(formats::sun_time(Event::sunset, day("2024-06-20"), {20, 70}).has_value());
   const Airspace airspace = read(ed269(R"("startTime": "17:00:00.00Z", "endTime": "23:59:59.00Z")",
                                        R"("startEvent": "SR", "endEvent": "SS")"));
   // At 7° E, 46° N on 2022-06-18 the sun rises at 03:39 and sets at 19:27.
@@ -270,9 +271,9 @@ TEST(Airspace, TheSunRisesAndSets) {
 }
 
 TEST(Airspace, FlightLevelsFollowThePressure) {
-  EXPECT_EQ(kit::standard_to_sea(3048, 1013.25), 3048);
-  EXPECT_NEAR(kit::standard_to_sea(3048, 1003.25), 3048 - 77, 3);  // 1 hPa is 27 to 30 ft
-  EXPECT_GT(kit::standard_to_sea(3048, 1030), 3150);
+  EXPECT_EQ(formats::standard_to_sea(3048, 1013.25), 3048);
+  EXPECT_NEAR(formats::standard_to_sea(3048, 1003.25), 3048 - 77, 3);  // 1 hPa is 27 to 30 ft
+  EXPECT_GT(formats::standard_to_sea(3048, 1030), 3150);
 }
 }  // namespace
 }  // namespace altiplan::testing

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::kit {

@@ -3,8 +3,8 @@
 // all edges, which the functions on shapes are.
 #include <gtest/gtest.h>
 
+#include "altiplan/formats/polygon.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
-#include "altiplan/kit/layers/polygon.hpp"
 #include "framework/shape_oracle.hpp"
 
 namespace altiplan {
@@ -258,31 +258,31 @@ TEST(ManyCorners, RingsThatMeetThemselvesAreFound) {
                                                 ? ring[std::size_t(draw.below(size))]
                                                 : Whole{draw.below(300) - 150, draw.below(100)};
     }
-    kit::Ring points;
+    formats::Ring points;
     for (const Whole& p : ring) {
       points.push_back({double(p[0]), double(p[1])});
     }
-    if (kit::without_repeats(points).size() != points.size()) {
+    if (formats::without_repeats(points).size() != points.size()) {
       continue;
     }
     const bool expected = meets_itself(ring);
     wrong += expected;
-    ASSERT_EQ(kit::polygon_problem({points, {}}).empty(), !expected) << n;
+    ASSERT_EQ(formats::polygon_problem({points, {}}).empty(), !expected) << n;
   }
   EXPECT_GT(wrong, 50);
   EXPECT_LT(wrong, 500);
 }
 
 TEST(ManyCorners, HolesAreHeldAgainstEachOtherAndTheOutline) {
-  kit::Polygon polygon{square(0, 0, 1000), {}};
+  formats::Polygon polygon{square(0, 0, 1000), {}};
   for (int n = 0; n < 400; ++n) {
     polygon.holes.push_back(square(-900 + 90 * (n % 20), -900 + 90 * (n / 20), 40));
   }
-  EXPECT_EQ(kit::polygon_problem(polygon), "");
+  EXPECT_EQ(formats::polygon_problem(polygon), "");
   const auto with = [&](const Ring& hole) {
-    kit::Polygon other = polygon;
+    formats::Polygon other = polygon;
     other.holes.push_back(hole);
-    return kit::polygon_problem(other);
+    return formats::polygon_problem(other);
   };
   EXPECT_EQ(with(square(-900, -900, 10)), "hole 401 and hole 1 lie one inside the other");
   EXPECT_EQ(with(square(-810, -900, 45)), "hole 401 and hole 2 lie one inside the other");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What ground stations wrote, read whole: which files are valid, and what stands in them.
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "altiplan/kit/lattice/natural_steps.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::kit {
@@ -142,20 +141,6 @@ TEST(Pruning, InSpaceKeepsWhatNoOtherWayReachesAmongBlockedCells) {
   }
   // Ways whose lengths are equal only because the cells are cubes do not count.
   EXPECT_LT(all_kept, 1.1 * all_needed);
-}
-
-TEST(Pruning, NaturalStepsAreTheSameWhereNoStepIsRuledOut) {
-  const Request request =
-      testing::request_in(World(), {5, 5, 5}, {60, 60, 60}, {{0, 0, 0}, {100, 100, 100}});
-  for (const Vec3& cell : {Vec3(10, 10, 10), Vec3(10, 10, 2.5), Vec3(5, 5, 20), Vec3(10, 25, 7)}) {
-    const Lattice lattice(request, cell, Neighbourhood::all, {});
-    for (const StepCosts::Scale scale : {StepCosts::Scale::fine, StepCosts::Scale::ratio}) {
-      const NaturalSteps natural(lattice.steps(), StepCosts(lattice, scale, 1000));
-      for (int in = 0; in < kDirections; ++in) {
-        EXPECT_EQ(natural[in], kNatural[std::size_t(in)] & lattice.steps()) << cell << ' ' << in;
-      }
-    }
-  }
 }
 }  // namespace
 }  // namespace altiplan::kit

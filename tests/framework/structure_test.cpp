@@ -114,10 +114,38 @@ TEST(Structure, TheApiHasNoTypeOfALibraryButEigen) {
   EXPECT_EQ(list(forbidden(sources("framework/include"), kOthers)), "");
 }
 
+TEST(Structure, TheSdkKnowsNeitherTheKitNorTheFormats) {
+  std::vector<fs::path> sdk = sources("framework/src");
+  const std::vector<fs::path> headers = sources("framework/include");
+  sdk.insert(sdk.end(), headers.begin(), headers.end());
+  std::erase_if(sdk, [](const fs::path& file) {
+    const std::string name = file.native();
+    return name.find("/kit/") != std::string::npos || name.find("/formats/") != std::string::npos;
+  });
+  EXPECT_GT(sdk.size(), 50u);
+  EXPECT_EQ(list(forbidden(sdk, std::regex("(^|/)(kit|formats)/"))), "");
+}
+
+TEST(Structure, NeitherTheKitNorTheFormatsKnowTheOther) {
+  for (const auto& [part, other] : {std::pair{"kit", "formats"}, std::pair{"formats", "kit"}}) {
+    std::vector<fs::path> code = sources("framework/src/" + std::string(part));
+    const std::vector<fs::path> headers =
+        sources("framework/include/altiplan/" + std::string(part));
+    code.insert(code.end(), headers.begin(), headers.end());
+    EXPECT_GT(code.size(), 20u);
+    EXPECT_EQ(list(forbidden(code, std::regex("(^|/)" + std::string(other) + "/"))), "");
+  }
+}
+
 TEST(Structure, TheCoreDoesNotKnowTheHost) {
   const std::regex kHost("(^|/)(host|link|study|tune)/|^(yaml-cpp|boost|gdal|CLI)");
-  EXPECT_GT(sources("framework/src").size(), 5u);
-  EXPECT_EQ(list(forbidden(sources("framework/src"), kHost)), "");
+  std::vector<fs::path> code = sources("framework/src");
+  EXPECT_GT(code.size(), 100u);
+  EXPECT_EQ(list(forbidden(code, kHost)), "");
+  std::erase_if(code, [](const fs::path& file) {
+    return file.native().find("/src/formats/") != std::string::npos;
+  });
+  EXPECT_EQ(list(forbidden(code, std::regex("^(nlohmann|pugixml)"))), "");
 }
 
 /// The rooms in their order, as the build has them.
@@ -231,8 +259,10 @@ TEST(Structure, AFilesNamespaceIsThatOfItsFolder) {
   const std::map<fs::path, std::string> namespaces{
       {"framework/include", "altiplan"},
       {"framework/include/altiplan/kit", "altiplan::kit"},
+      {"framework/include/altiplan/formats", "altiplan::formats"},
       {"framework/src", "altiplan"},
       {"framework/src/kit", "altiplan::kit"},
+      {"framework/src/formats", "altiplan::formats"},
       {"framework/host", "altiplan::host"},
       {"framework/link", "altiplan::link"},
       {"framework/study", "altiplan::study"},

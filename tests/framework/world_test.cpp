@@ -8,8 +8,8 @@
 #include <future>
 #include <thread>
 
+#include "altiplan/formats/iso_time.hpp"
 #include "altiplan/frame.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/planner.hpp"
 #include "support/support.hpp"
@@ -370,13 +370,13 @@ TEST(SplitMix64, KnownSequence) {
 }
 
 TEST(IsoTime, ReadsAndRefuses) {
-  EXPECT_EQ(kit::parse_iso_time("1970-01-02"), 86400);
-  EXPECT_EQ(kit::parse_iso_time("2026-05-01T10:00:00Z"), 1777629600);
-  EXPECT_EQ(kit::parse_iso_time("2026-05-01T12:00:00+02:00"), 1777629600);
-  EXPECT_EQ(kit::parse_iso_time("2026-05-01T10:00Z"), 1777629600);
+  EXPECT_EQ(formats::parse_iso_time("1970-01-02"), 86400);
+  EXPECT_EQ(formats::parse_iso_time("2026-05-01T10:00:00Z"), 1777629600);
+  EXPECT_EQ(formats::parse_iso_time("2026-05-01T12:00:00+02:00"), 1777629600);
+  EXPECT_EQ(formats::parse_iso_time("2026-05-01T10:00Z"), 1777629600);
   for (const char* bad : {"", "2026-02-30", "2026-05-01T25:00Z", "2026-05-01T10:00:00", "today",
                           "2026-05-01T10:00:00Zx"}) {
-    EXPECT_FALSE(kit::parse_iso_time(bad)) << bad;
+    EXPECT_FALSE(formats::parse_iso_time(bad)) << bad;
   }
 }
 

@@ -111,7 +111,8 @@ class Bench:
         self.program.parent.mkdir()
         shutil.copy(build / "bin/altiplan", self.program)
         (folder / "lib").mkdir()
-        shutil.copy(build / "lib/libaltiplan.so.2", folder / "lib/libaltiplan.so.2")
+        for library in (build / "lib").glob("libaltiplan*.so.*"):
+            shutil.copy(library, folder / "lib", follow_symlinks=False)
         self.libraries = {}
         self.undamaged = {}
         plugins = sorted((build / "lib/altiplan/plugins").glob("libaltiplan_*.so"))

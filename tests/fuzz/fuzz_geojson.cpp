@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader of GeoJSON. The bits of the first byte say which properties are asked for.
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/geojson.hpp"
+#include "altiplan/formats/geojson.hpp"
 #include "fuzz/memory_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -15,9 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto file =
       kFolder.write("zones.geojson", altiplan::fuzz::text_of(data + 1, size - 1)).string();
   try {
-    const altiplan::kit::GeoJson json = altiplan::kit::read_geojson(file);
-    altiplan::kit::expect_properties(file, json, {asked(0, "floor"), asked(1, "from")});
-    for (const altiplan::kit::GeoFeature& feature : json.features) {
+    const altiplan::formats::GeoJson json = altiplan::formats::read_geojson(file);
+    altiplan::formats::expect_properties(file, json, {asked(0, "floor"), asked(1, "from")});
+    for (const altiplan::formats::GeoFeature& feature : json.features) {
       (void)(feature.metres(asked(2, "floor")), feature.text(asked(3, "from")));
     }
   } catch (const altiplan::Error&) {

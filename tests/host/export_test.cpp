@@ -16,10 +16,10 @@
 namespace altiplan::host {
 namespace {
 
-using kit::AltitudeFrame;
-using kit::MissionItem;
-using kit::Zone;
-using Format = kit::MissionFile::Format;
+using formats::AltitudeFrame;
+using formats::MissionItem;
+using formats::Zone;
+using Format = formats::MissionFile::Format;
 
 /// Level ground at 120 m.
 class Plain final : public Environment, public Ground {
@@ -169,15 +169,16 @@ TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
   const Exported result = exported(scene, options_of(Format::qgc_plan));
   EXPECT_TRUE(says(result, "zone 'site' is in the fence at every height"));
   EXPECT_TRUE(says(result, "zone 'yard' is in the fence without its holes"));
-  const kit::MissionFile plan = kit::read_mission("r.plan", *result.text);
+  const formats::MissionFile plan = formats::read_mission("r.plan", *result.text);
   ASSERT_EQ(plan.zones.size(), 3U);
   EXPECT_EQ(std::count_if(plan.zones.begin(), plan.zones.end(),
                           [](const Zone& zone) { return zone.keeps_in(); }),
             1);
   EXPECT_EQ(plan.zones.front().name, "yard");
   EXPECT_EQ(plan.zones.back().name, "site");
-  const kit::ZoneVolume& circle = plan.zones.back().volumes.at(0);  // circles come after polygons
-  EXPECT_GE(circle.radius_m, 100);  // in true metres: the frame is exact at another latitude
+  const formats::ZoneVolume& circle =
+      plan.zones.back().volumes.at(0);  // circles come after polygons
+  EXPECT_GE(circle.radius_m, 100);      // in true metres: the frame is exact at another latitude
   EXPECT_LT(circle.radius_m, 100.2);
   const auto centre = scene.mission.truth.frame().to_local(circle.centre[0], circle.centre[1]);
   EXPECT_NEAR(centre[0], 500, 0.01);
@@ -192,16 +193,16 @@ TEST(Export, AZoneThatTheRouteFliesOverStaysOutOfTheFence) {
   ASSERT_TRUE(result.text.has_value());
   EXPECT_TRUE(
       says(result, "zone 'site' is left out of the fence: the route passes above or below it"));
-  EXPECT_EQ(kit::read_mission("r.plan", *result.text).zones.size(), 2U);
+  EXPECT_EQ(formats::read_mission("r.plan", *result.text).zones.size(), 2U);
 }
 
 TEST(Export, KmlAndItsReaderKeepLimitsRolesAndHoles) {
   const Scene scene;
   const Exported result = exported(scene, options_of(Format::kml));
-  const kit::MissionFile map = kit::read_mission("r.kml", *result.text);
+  const formats::MissionFile map = formats::read_mission("r.kml", *result.text);
   ASSERT_EQ(map.zones.size(), 3U);
   EXPECT_EQ(map.zones[0].name, "site");
-  EXPECT_EQ(map.zones[0].volumes.at(0).upper, kit::ZoneLimit::sea(400));
+  EXPECT_EQ(map.zones[0].volumes.at(0).upper, formats::ZoneLimit::sea(400));
   EXPECT_EQ(map.zones[0].volumes.at(0).polygon.outline.size(), 64U);
   EXPECT_EQ(map.zones[1].volumes.at(0).polygon.holes.size(), 1U);
   EXPECT_TRUE(map.zones[2].keeps_in());
@@ -223,7 +224,7 @@ TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
       options.takeoff = options.land = true;
       const Exported result = exported(scene, options);
       ASSERT_TRUE(result.text.has_value());
-      const kit::MissionFile read = kit::read_mission(file, *result.text);
+      const formats::MissionFile read = formats::read_mission(file, *result.text);
       ASSERT_EQ(read.items.size(), kAround.size() + 1);
       EXPECT_EQ(read.items.front().kind, MissionItem::Kind::takeoff);
       EXPECT_EQ(read.items.back().kind, MissionItem::Kind::land);
@@ -250,10 +251,10 @@ TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
   const Exported six = exported(scene, options, dense);
   ASSERT_TRUE(six.text.has_value());
   EXPECT_TRUE(says(six, "35 of 41 points dropped"));
-  EXPECT_EQ(kit::read_mission("r.waypoints", *six.text).items.size(), 6U);
+  EXPECT_EQ(formats::read_mission("r.waypoints", *six.text).items.size(), 6U);
   options.land = true;
-  EXPECT_EQ(kit::read_mission("r.waypoints", *exported(scene, options, dense).text).items.size(),
-            6U);
+  EXPECT_EQ(
+      formats::read_mission("r.waypoints", *exported(scene, options, dense).text).items.size(), 6U);
   options.land = false;
   options.max_items = 2;  // straight through the site
   const Exported two = exported(scene, options, dense);
@@ -321,7 +322,7 @@ TEST(Export, SaysWhatTheWorldLacks) {
   home.home_altitude_m = 80;
   const Exported with_home = exported(groundless, home);
   EXPECT_TRUE(says(with_home, "relative to home, which is 80 m"));
-  const kit::MissionFile file = kit::read_mission("a.plan", with_home.text.value());
+  const formats::MissionFile file = formats::read_mission("a.plan", with_home.text.value());
   EXPECT_EQ(file.items.front().at.altitude_m, 220);
   EXPECT_EQ(file.items.back().at.altitude_m, 0);
   home.home_altitude_m = 300;
@@ -362,7 +363,7 @@ TEST(Export, OptionsThatDoNotGoTogether) {
 TEST(ImportedRoute, FramesAreResolvedInTheWorld) {
   const Scene scene;
   const World& world = scene.mission.truth;
-  const std::optional<kit::MissionPoint> home = kit::MissionPoint{-84.3, 36.5, 55};
+  const std::optional<formats::MissionPoint> home = formats::MissionPoint{-84.3, 36.5, 55};
   EXPECT_EQ(to_local({-84.3, 36.5, 7, AltitudeFrame::sea}, home, world).z(), 7);
   EXPECT_EQ(to_local({-84.3, 36.5, 7, AltitudeFrame::ground}, home, world).z(), 127);
   EXPECT_EQ(to_local({-84.3, 36.5, 7, AltitudeFrame::home}, home, world).z(), 62);

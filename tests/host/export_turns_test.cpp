@@ -20,8 +20,8 @@
 namespace altiplan::host {
 namespace {
 
-using Format = kit::MissionFile::Format;
-using Until = kit::MissionCircle::Until;
+using Format = formats::MissionFile::Format;
+using Until = formats::MissionCircle::Until;
 
 constexpr double kRadius = 80;
 constexpr double kClimb = radians(8);
@@ -105,8 +105,8 @@ Route corner(double turn, double climb = 0, double radius = kRadius) {
   return route;
 }
 
-kit::MissionFile plan_of(const Exported& exported) {
-  return kit::read_mission("r.plan", exported.text.value());
+formats::MissionFile plan_of(const Exported& exported) {
+  return formats::read_mission("r.plan", exported.text.value());
 }
 
 TEST(ExportTurns, EveryFormatTakesThemAsPointsWithinHalfAMetre) {
@@ -198,8 +198,8 @@ TEST(ExportTurns, AHelixIsALoiterToItsAltitudeAndFullCirclesAtOneHeightAreCounte
   mission = mission_for(level);
   const Exported around = exported(mission, level, options_of(Format::waypoints, true));
   ASSERT_TRUE(around.text) << all_of(around);
-  const kit::MissionFile file = kit::read_mission("r.waypoints", *around.text);
-  EXPECT_EQ(file.items[2].circle, (kit::MissionCircle{Until::turns, kRadius, -1, 2}));
+  const formats::MissionFile file = formats::read_mission("r.waypoints", *around.text);
+  EXPECT_EQ(file.items[2].circle, (formats::MissionCircle{Until::turns, kRadius, -1, 2}));
   EXPECT_NE(all_of(around).find("PX4 does not accept the full circles"), std::string::npos);
   EXPECT_LT(apart(level, read_back(mission, *around.text, Format::waypoints)), 0.03);
 }
@@ -223,7 +223,7 @@ TEST(ExportTurns, WhatAnAutopilotWouldFlyDifferentlyIsWrittenAsPoints) {
     const Mission mission = mission_for(route);
     const Exported result = exported(mission, route, options_of(Format::qgc_plan, true));
     ASSERT_TRUE(result.text) << all_of(result);
-    const kit::MissionFile file = plan_of(result);
+    const formats::MissionFile file = plan_of(result);
     EXPECT_EQ(std::size_t(std::count_if(file.items.begin(), file.items.end(),
                                         [](const auto& item) { return item.circle.has_value(); })),
               loiters);
@@ -273,9 +273,9 @@ TEST(ExportTurns, LoitersOfStartAndGoalAreCirclesThatARouteLeavesAndJoins) {
     const Exported result = exported(mission, route, options_of(format, true));
     ASSERT_TRUE(result.text) << all_of(result);
     EXPECT_NE(all_of(result).find("valid with 7 decimals"), std::string::npos) << all_of(result);
-    const kit::MissionFile file = kit::read_mission(file_of(format), *result.text);
-    EXPECT_EQ(file.items.front().circle, (kit::MissionCircle{Until::altitude, 100, 1, 0}));
-    EXPECT_EQ(file.items.back().circle, (kit::MissionCircle{Until::forever, 120, -1, 0}));
+    const formats::MissionFile file = formats::read_mission(file_of(format), *result.text);
+    EXPECT_EQ(file.items.front().circle, (formats::MissionCircle{Until::altitude, 100, 1, 0}));
+    EXPECT_EQ(file.items.back().circle, (formats::MissionCircle{Until::forever, 120, -1, 0}));
     EXPECT_LT(apart(route, read_back(mission, *result.text, format)), 0.05);
   }
   for (const auto format : {std::optional(Format::kml), std::optional<Format>()}) {
@@ -313,7 +313,7 @@ TEST(ExportTurns, CirclesNeedCommandsAndOneHeight) {
   EXPECT_NE(options_of(Format::kml, true).problem(), "");
   EXPECT_NE(options_of(std::nullopt, true).problem(), "");
   ExportOptions options = options_of(Format::qgc_plan, true);
-  options.altitude = kit::AltitudeFrame::ground;
+  options.altitude = formats::AltitudeFrame::ground;
   EXPECT_NE(options.problem(), "");
 }
 

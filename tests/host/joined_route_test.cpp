@@ -7,7 +7,7 @@
 namespace altiplan::host {
 namespace {
 
-using Until = kit::MissionCircle::Until;
+using Until = formats::MissionCircle::Until;
 
 /// The route past places that no other part of the program wrote.
 JoinedRoute joined(const std::vector<MissionPlace>& places) {
@@ -15,7 +15,7 @@ JoinedRoute joined(const std::vector<MissionPlace>& places) {
 }
 
 TEST(JoinedRoute, EntersAndLeavesACircleOnTangents) {
-  const kit::MissionCircle left{Until::turns, 100, 1, 1};
+  const formats::MissionCircle left{Until::turns, 100, 1, 1};
   const JoinedRoute route = joined({{{-1000, 0, 50}}, {{0, 100, 80}, left}, {{100, 900, 60}}});
   EXPECT_EQ(route.circles, 1U);
   ASSERT_EQ(route.route.leg_count(), 3U);
@@ -25,8 +25,8 @@ TEST(JoinedRoute, EntersAndLeavesACircleOnTangents) {
 }
 
 TEST(JoinedRoute, TwoCirclesShareATangent) {
-  const kit::MissionCircle left{Until::altitude, 100, 1, 0};
-  const kit::MissionCircle right{Until::altitude, 50, -1, 0};
+  const formats::MissionCircle left{Until::altitude, 100, 1, 0};
+  const formats::MissionCircle right{Until::altitude, 50, -1, 0};
   const JoinedRoute route =
       joined({{{-500, -100, 50}}, {{0, 0, 50}, left}, {{400, 300, 50}, right}, {{900, 300, 50}}});
   EXPECT_EQ(route.circles, 2U);
@@ -38,7 +38,7 @@ TEST(JoinedRoute, TwoCirclesShareATangent) {
 }
 
 TEST(JoinedRoute, CirclesWithoutTangentsAreWaypoints) {
-  const kit::MissionCircle circle{Until::altitude, 100, 1, 0};
+  const formats::MissionCircle circle{Until::altitude, 100, 1, 0};
   const JoinedRoute inside = joined({{{10, 0, 50}}, {{0, 0, 50}, circle}, {{900, 0, 50}}});
   EXPECT_EQ(inside.unjoined, 1U);
   EXPECT_EQ(inside.route, (Route{{10, 0, 50}, {0, 0, 50}, {900, 0, 50}}));
@@ -47,10 +47,10 @@ TEST(JoinedRoute, CirclesWithoutTangentsAreWaypoints) {
 }
 
 TEST(JoinedRoute, EndsWhereItEntersTheLastCircleAndBeginsWhereItLeavesTheFirst) {
-  const kit::MissionCircle circle{Until::forever, 100, 1, 0};
+  const formats::MissionCircle circle{Until::forever, 100, 1, 0};
   const Route to = joined({{{-900, -100, 50}}, {{0, 0, 50}, circle}}).route;
   EXPECT_LT((to.back() - Vec3(0, -100, 50)).norm(), 1e-9);
-  const kit::MissionCircle first{Until::turns, 100, 1, 0};
+  const formats::MissionCircle first{Until::turns, 100, 1, 0};
   const Route from = joined({{{0, 0, 50}, first}, {{900, -100, 50}}}).route;
   EXPECT_LT((from.front() - Vec3(0, -100, 50)).norm(), 1e-9);
 }
@@ -59,7 +59,7 @@ TEST(JoinedRoute, TheLastCircleKeepsItsHeightAndItsSense) {
   const std::vector<MissionPlace> way = {{{-900, -100, 50}}, {{0, -100, 50}}};
   const auto ending_on = [&](double z, int sense) {
     std::vector<MissionPlace> places = way;
-    places.push_back({{0, 0, z}, kit::MissionCircle{Until::forever, 100, sense, 0}});
+    places.push_back({{0, 0, z}, formats::MissionCircle{Until::forever, 100, sense, 0}});
     return joined(places);
   };
   EXPECT_EQ(ending_on(50, 1).route.size(), 2U);

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -57,7 +57,7 @@ TEST(Program, ReportsHowItEnded) {
   Program said(shell("echo nothing; echo $TMPDIR >&2"),
                {.errors = folder.path() / "errors", .temporary = "/elsewhere"});
   EXPECT_EQ(said.ended(late()), 0);
-  EXPECT_EQ(kit::read_file((folder.path() / "errors").string()), "/elsewhere\n");
+  EXPECT_EQ(formats::read_file((folder.path() / "errors").string()), "/elsewhere\n");
 }
 
 TEST(Program, OneThatHasEndedTakesNothing) {

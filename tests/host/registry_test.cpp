@@ -134,6 +134,13 @@ TEST_F(RegistryTest, RefusesAPluginBuiltWithHeadersThatDeclareOtherwise) {
                  ": built with other headers; build it again");
 }
 
+TEST_F(RegistryTest, RefusesALibraryBuiltWithAnotherKit) {
+  const std::string refused = examine_library(kBroken / "neighbours/other_kit.so").refused;
+  EXPECT_TRUE(refused.starts_with("built with the kit of altiplan 0.0.9, this is altiplan 0."))
+      << refused;
+  EXPECT_TRUE(refused.ends_with(": build it again")) << refused;
+}
+
 TEST_F(RegistryTest, NamesTheFilesOfANameThatIsOfferedTwice) {
   const auto rename = [](Manifest& m) {
     EXPECT_STREQ(m.file, "two_plugins.cpp");

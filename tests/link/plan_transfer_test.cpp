@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "link/lossy_vehicle.hpp"
 #include "support/folders.hpp"
 
@@ -96,7 +96,7 @@ TEST(LinkPlanTransfer, AFenceIsWrittenAsItWasRead) {
   PlanItem point{Command::kRallyPoint};
   point.params = {0, 0, 0, 0, 46.25, 9.25, 100};
   plan.rally.push_back(point);
-  const kit::MissionFile file = kit::read_mission("downloaded.plan", host::plan_text(plan));
+  const formats::MissionFile file = formats::read_mission("downloaded.plan", host::plan_text(plan));
   ASSERT_EQ(file.items.size(), 3U);
   ASSERT_EQ(file.zones.size(), 2U);
   EXPECT_EQ(file.zones[0].keep_in != file.zones[1].keep_in, true);
@@ -112,11 +112,11 @@ TEST(LinkPlanTransfer, MissionsOfOtherProgramsComeBackEqual) {
   std::size_t missions = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     host::MissionText text;
-    if (!kit::is_mission_file(entry.path().string())) {
+    if (!formats::is_mission_file(entry.path().string())) {
       continue;
     }
     try {
-      text.mission = kit::read_mission(entry.path().string());
+      text.mission = formats::read_mission(entry.path().string());
     } catch (const Error&) {
       continue;  // damaged on purpose
     }

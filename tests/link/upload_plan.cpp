@@ -84,9 +84,9 @@ std::vector<PlanItem> random_rally(RandomStream& random, double lat, double lon)
 
 host::Plan plan_from(const std::string& source, RandomStream& random) {
   host::Plan plan;
-  if (kit::is_mission_file(source)) {
+  if (formats::is_mission_file(source)) {
     host::MissionText text;
-    text.mission = kit::read_mission(source);
+    text.mission = formats::read_mission(source);
     plan = host::plan_of(text);
   } else {
     plan.items = random_items(random, std::atoi(source.c_str()));

@@ -8,12 +8,12 @@
 #include <iostream>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/airspace_index.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/airspace_index.hpp"
+#include "altiplan/formats/input_file.hpp"
 
 namespace {
 using namespace altiplan;
-using kit::ZoneLimit;
+using formats::ZoneLimit;
 
 std::string limit_text(const ZoneLimit& limit) {
   constexpr const char* kNames[] = {"none", "ground", "sea", "standard"};
@@ -22,13 +22,13 @@ std::string limit_text(const ZoneLimit& limit) {
   return text;
 }
 
-void print(const kit::Airspace& airspace) {
+void print(const formats::Airspace& airspace) {
   constexpr const char* kNames[] = {"keep_out", "ask", "inform"};
-  std::cout << "format\t" << kit::format_name(airspace.format) << "\n";
-  for (const kit::Zone& zone : airspace.zones) {
+  std::cout << "format\t" << formats::format_name(airspace.format) << "\n";
+  for (const formats::Zone& zone : airspace.zones) {
     std::cout << "zone\t" << zone.id << "\t" << zone.name << "\t" << zone.type << "\t"
               << kNames[int(zone.restriction)] << "\t" << zone.periods.size() << "\n";
-    for (const kit::ZoneVolume& volume : zone.volumes) {
+    for (const formats::ZoneVolume& volume : zone.volumes) {
       std::cout << "volume\t" << limit_text(volume.lower) << "\t" << limit_text(volume.upper)
                 << "\t" << volume.polygon.outline.size() << "\t" << volume.polygon.holes.size()
                 << "\n";
@@ -40,16 +40,16 @@ void print(const kit::Airspace& airspace) {
   std::cout << "end\n";
 }
 
-void answer(const kit::AirspaceIndex& index) {
+void answer(const formats::AirspaceIndex& index) {
   std::string lon, lat, z, ground, time;
   while (std::cin >> lon >> lat >> z >> ground >> time) {
-    kit::AirspaceIndex::Place place{std::stod(lon), std::stod(lat), std::stod(z),
-                                    std::stod(ground)};
+    formats::AirspaceIndex::Place place{std::stod(lon), std::stod(lat), std::stod(z),
+                                        std::stod(ground)};
     if (std::isnan(*place.ground_m)) {
       place.ground_m.reset();
     }
     std::string found;
-    index.visit(place, std::stod(time), std::stod(time), [&](const kit::Zone& zone) {
+    index.visit(place, std::stod(time), std::stod(time), [&](const formats::Zone& zone) {
       found += (found.empty() ? "" : " ") + std::to_string(&zone - index.zones().data());
       return true;
     });
@@ -61,16 +61,16 @@ void answer(const kit::AirspaceIndex& index) {
 int main(int argc, char** argv) {
   try {
     const std::string file = argc > 1 ? argv[1] : "";
-    const std::string text = kit::read_file(file);
+    const std::string text = formats::read_file(file);
     const auto start = std::chrono::steady_clock::now();
-    auto airspace = kit::read_airspace(file, text);
+    auto airspace = formats::read_airspace(file, text);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     std::cerr << "read in " << spent.count() << " s\n";
     if (!airspace) {
       throw Error(file + ": is no airspace");
     }
     print(*airspace);
-    answer(kit::AirspaceIndex(std::move(airspace->zones)));
+    answer(formats::AirspaceIndex(std::move(airspace->zones)));
     return 0;
   } catch (const Error& error) {
     std::cout << "error\t" << error.what() << "\n";

@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include "altiplan/kit/formats/iso_time.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/iso_time.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "check_plan.hpp"
 #include "commands.hpp"
 #include "host/flight/events.hpp"
@@ -188,11 +188,11 @@ void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>&
     throw UsageError{
         "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
   }
-  if (arguments.result && !is_plan(arguments) && kit::is_mission_file(*arguments.result)) {
+  if (arguments.result && !is_plan(arguments) && formats::is_mission_file(*arguments.result)) {
     throw UsageError{*arguments.result + " is a mission: add --terrain DEM or --scenario FILE"};
   }
   if (arguments.plan.start_time && (arguments.plan.start_time->find('T') == std::string::npos ||
-                                    !kit::parse_iso_time(*arguments.plan.start_time))) {
+                                    !formats::parse_iso_time(*arguments.plan.start_time))) {
     throw UsageError{"--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
                      *arguments.plan.start_time + "'"};
   }

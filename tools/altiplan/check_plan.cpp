@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "altiplan/kit/formats/input_file.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/sha256.hpp"
@@ -76,12 +76,12 @@ void print(const PlanReport& report, const host::Mission& world) {
 }
 
 /// When the vehicle is expected at each waypoint of the route, seconds from take-off.
-std::vector<double> arrivals_of(const PlanCheck& plan, const kit::MissionFile& mission,
+std::vector<double> arrivals_of(const PlanCheck& plan, const formats::MissionFile& mission,
                                 const PlanReport& report) {
   const std::vector<double> times = flown_times(plan, mission);
   std::vector<double> arrivals;
   std::size_t n = 0;
-  for (const kit::MissionItem& item : report.imported.items) {
+  for (const formats::MissionItem& item : report.imported.items) {
     while (n < times.size() && mission.items[n].place != item.place) {
       ++n;
     }
@@ -125,7 +125,7 @@ Json to_json(const PlanReport& report, const host::Mission& world,
               {"notes", report.notes}};
 }
 
-host::Basis basis_of(const PlanCheck& plan, const kit::MissionFile& mission) {
+host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission) {
   host::Basis basis;
   const auto add_file = [&](const char* what, const std::string& file) {
     basis.emplace_back(what, file + ", SHA-256 " + host::sha256(file));
@@ -157,8 +157,8 @@ host::Basis basis_of(const PlanCheck& plan, const kit::MissionFile& mission) {
   basis.emplace_back("hours", plan.start_time ? *plan.start_time + " and " +
                                                     duration(flown_s(plan, mission)) + " on"
                                               : "any: zones count at all hours");
-  basis.emplace_back("judged",
-                     kit::iso_time(double(std::time(nullptr))) + " by altiplan " ALTIPLAN_VERSION);
+  basis.emplace_back(
+      "judged", formats::iso_time(double(std::time(nullptr))) + " by altiplan " ALTIPLAN_VERSION);
   return basis;
 }
 
@@ -200,7 +200,7 @@ std::vector<host::ChangedItem> changes_of(const PlanReport& report, const host::
 
 /// Writes the cured mission, judged again, or says why not.
 void fix(const PlanCheck& plan, const PlanReport& report, const std::string& text,
-         const kit::MissionFile& mission, const host::Mission& world) {
+         const formats::MissionFile& mission, const host::Mission& world) {
   if (report.passed()) {
     warn(*plan.fixed + ": not written: the mission passes as it is");
     return;
@@ -211,7 +211,7 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
   const std::string better = host::changed_plan(text, mission.format, changes);
   const bool passes =
       !changes.empty() &&
-      host::judge_plan(plan.plan, kit::read_mission(plan.plan, better), world, !plan.scenario)
+      host::judge_plan(plan.plan, formats::read_mission(plan.plan, better), world, !plan.scenario)
           .passed();
   if (!passes) {
     warn(*plan.fixed +
@@ -289,8 +289,8 @@ namespace {
 
 int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
            const host::Overrides& overrides) {
-  const std::string text = kit::read_file(plan.plan);
-  const kit::MissionFile mission = kit::read_mission(plan.plan, text);
+  const std::string text = formats::read_file(plan.plan);
+  const formats::MissionFile mission = formats::read_mission(plan.plan, text);
   if (plan.fixed) {
     static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
   }

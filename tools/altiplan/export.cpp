@@ -10,7 +10,7 @@
 namespace altiplan::cli {
 namespace {
 
-using Format = kit::MissionFile::Format;
+using Format = formats::MissionFile::Format;
 
 struct ExportArguments {
   RouteExport route;

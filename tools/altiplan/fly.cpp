@@ -34,8 +34,8 @@ struct FlyArguments {
 /// The places of the mission's items along the route, in local metres; a landing is not part of it.
 std::vector<Vec3> places_of(const host::MissionText& text, const LoadedRoute& loaded) {
   std::vector<Vec3> places;
-  for (const kit::MissionItem& item : text.mission.items) {
-    if (item.kind != kit::MissionItem::Kind::land) {
+  for (const formats::MissionItem& item : text.mission.items) {
+    if (item.kind != formats::MissionItem::Kind::land) {
       places.push_back(host::to_local(item.at, text.mission.home, loaded.mission.known));
     }
   }
@@ -166,7 +166,7 @@ void add_fly(App& app, Action& action) {
     if (arguments.route.arcs == "loiter") {
       throw UsageError{"fly follows legs between points: give --arcs points"};
     }
-    arguments.route.options.format = kit::MissionFile::Format::qgc_plan;
+    arguments.route.options.format = formats::MissionFile::Format::qgc_plan;
     finish_options(arguments.route);
   };
   auto [command, arguments] = add_command<FlyArguments>(

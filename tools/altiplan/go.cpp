@@ -144,7 +144,7 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
   RouteExport route;
   route.result = folder / "result.json";
   route.overrides = arguments.overrides;
-  route.options.format = kit::MissionFile::Format::qgc_plan;
+  route.options.format = formats::MissionFile::Format::qgc_plan;
   route.options.takeoff = route.options.land = !arguments.wish.turn_radius_m;
   finish_options(route);
   const host::Scene scene = busy("drawing the page", [&] {

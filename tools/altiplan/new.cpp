@@ -5,7 +5,7 @@
 #include <map>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/install_root.hpp"
 #include "host/base/output_file.hpp"
@@ -118,7 +118,7 @@ using Files = std::map<fs::path, std::string>;
 void add_files(const fs::path& folder, Files& files) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file()) {
-      files[entry.path().lexically_relative(folder)] = kit::read_file(entry.path().string());
+      files[entry.path().lexically_relative(folder)] = formats::read_file(entry.path().string());
     }
   }
 }
@@ -168,7 +168,7 @@ int new_script(const NewArguments& arguments) {
     throw Error("'" + file.string() + "' exists and is not overwritten: choose another name");
   }
   const fs::path templates = host::install_root() / "share/altiplan/templates";
-  std::string text = kit::read_file((templates / "python" / (arguments.kind + ".py")).string());
+  std::string text = formats::read_file((templates / "python" / (arguments.kind + ".py")).string());
   replace_all(text, "@name@", arguments.name);
   host::write_file(file, text);
   std::cout << file.string() << " holds the " << arguments.kind << " '" << arguments.name

@@ -32,19 +32,19 @@ std::string name_of(const std::string& file) {
 }
 
 /// True if the mission has a fence for the autopilot; of other formats polygons are areas of work.
-bool has_fence(const kit::MissionFile& mission) {
-  using Format = kit::MissionFile::Format;
+bool has_fence(const formats::MissionFile& mission) {
+  using Format = formats::MissionFile::Format;
   return !mission.zones.empty() &&
          (mission.format == Format::qgc_plan || mission.format == Format::waypoints);
 }
 
-std::string point_text(const char* key, const kit::MissionItem& item) {
+std::string point_text(const char* key, const formats::MissionItem& item) {
   return std::string(key) + ": {at_lonlat: [" + Json(item.at.lon).dump() + ", " +
          Json(item.at.lat).dump() + ", 0]}\n";
 }
 
 /// The scenario that the options describe.
-std::string world_text(const PlanCheck& plan, const kit::MissionFile& mission) {
+std::string world_text(const PlanCheck& plan, const formats::MissionFile& mission) {
   // A void is closed: whatever flies over it flies into the ground.
   const std::string voids =
       plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
@@ -88,11 +88,11 @@ std::string world_text(const PlanCheck& plan, const kit::MissionFile& mission) {
 }
 }  // namespace
 
-std::vector<double> flown_times(const PlanCheck& plan, const kit::MissionFile& mission) {
+std::vector<double> flown_times(const PlanCheck& plan, const formats::MissionFile& mission) {
   return host::item_times(mission, plan.speed_mps.value_or(kSpeed));
 }
 
-double flown_s(const PlanCheck& plan, const kit::MissionFile& mission) {
+double flown_s(const PlanCheck& plan, const formats::MissionFile& mission) {
   return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
 }
 
@@ -105,7 +105,7 @@ std::string about_file(const std::string& message) {
              : message;
 }
 
-host::Config world_of(const PlanCheck& plan, const kit::MissionFile& mission,
+host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission,
                       const host::Overrides& overrides) {
   host::Config config =
       host::load_scenario_text(world_text(plan, mission), std::string(kWorld), overrides);

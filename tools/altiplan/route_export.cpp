@@ -10,11 +10,11 @@
 namespace altiplan::cli {
 namespace {
 
-const std::map<std::string, kit::AltitudeFrame>& altitudes() {
-  static const std::map<std::string, kit::AltitudeFrame> kAll{
-      {"sea", kit::AltitudeFrame::sea},
-      {"ground", kit::AltitudeFrame::ground},
-      {"home", kit::AltitudeFrame::home}};
+const std::map<std::string, formats::AltitudeFrame>& altitudes() {
+  static const std::map<std::string, formats::AltitudeFrame> kAll{
+      {"sea", formats::AltitudeFrame::sea},
+      {"ground", formats::AltitudeFrame::ground},
+      {"home", formats::AltitudeFrame::home}};
   return kAll;
 }
 

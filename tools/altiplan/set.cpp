@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/config/yaml.hpp"
@@ -25,7 +25,7 @@ struct Edited {
 
 Edited edited(const std::filesystem::path& file, const SetArguments& arguments,
               host::FileOfKey which) {
-  const std::string before = kit::read_file(file);
+  const std::string before = formats::read_file(file);
   return {file, before,
           host::with_assignments(before, file.string(), arguments.overrides.set, which)};
 }

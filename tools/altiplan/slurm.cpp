@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/program.hpp"
@@ -85,7 +85,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
   if (!fs::exists(file)) {
     return lines;
   }
-  kit::InputFile in(file.string());
+  formats::InputFile in(file.string());
   for (std::string line; std::getline(in, line);) {
     lines.push_back(line);
   }

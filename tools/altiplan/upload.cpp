@@ -25,7 +25,7 @@ int upload_result(const UploadArguments& arguments) {
 
 void add_upload(App& app, Action& action) {
   const auto prepare = [](UploadArguments& arguments) {
-    arguments.route.options.format = kit::MissionFile::Format::qgc_plan;
+    arguments.route.options.format = formats::MissionFile::Format::qgc_plan;
     finish_options(arguments.route);
   };
   auto [command, arguments] = add_command<UploadArguments>(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/base/input.hpp"
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
@@ -9,9 +9,10 @@ namespace altiplan::host {
 std::string file_problem(const std::filesystem::path& file) {
   std::error_code error;  // why_unreadable reports it
   if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) {
-    return "file not found: '" + file.string() + "'" + kit::nearest_beside(file.string(), false);
+    return "file not found: '" + file.string() + "'" +
+           formats::nearest_beside(file.string(), false);
   }
-  const std::string why = kit::why_unreadable(file.string());
+  const std::string why = formats::why_unreadable(file.string());
   if (why.empty()) {
     return "";
   }

@@ -8,6 +8,6 @@ namespace altiplan::host {
 
 /// The reason why a file named in another one cannot be read ("file not found: 'a'", "'a' is a
 /// pipe, expected a file"); "" if it can. Throws MachineFault if the machine fails to provide it.
-/// altiplan/kit/formats/input_file.hpp describes how files are read.
+/// altiplan/formats/input_file.hpp describes how files are read.
 std::string file_problem(const std::filesystem::path& file);
 }  // namespace altiplan::host

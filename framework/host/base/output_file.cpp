@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/utf8.hpp"
 
 namespace altiplan::host {
@@ -88,7 +88,7 @@ std::string output_problem(const fs::path& place) {
   if (::stat(folder.c_str(), &found) != 0) {
     const int reason = errno;
     return "cannot write into the folder '" + folder.string() + "': " + std::strerror(reason) +
-           (reason == ENOENT ? kit::nearest_beside(folder.string(), true) : "");
+           (reason == ENOENT ? formats::nearest_beside(folder.string(), true) : "");
   }
   if (!S_ISDIR(found.st_mode)) {
     return "cannot write into the folder '" + folder.string() + "': " + std::strerror(ENOTDIR);

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <tuple>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 
 namespace altiplan::host {
@@ -68,7 +68,7 @@ std::string sha256(const std::filesystem::path& file) {
 std::string sha256_of_present(const std::filesystem::path& file) {
   std::string sum = sha256(file);
   if (sum.empty() && !is_folder(file)) {
-    if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
+    if (const std::string why = formats::why_unreadable(file.string()); !why.empty()) {
       throw MachineFault(file.string() + ": " + why);
     }
     sum = sha256(file);  // the fault may have passed

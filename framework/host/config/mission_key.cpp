@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/params.hpp"
 #include "host/base/machine_fault.hpp"
 
@@ -13,9 +13,9 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-using kit::AltitudeFrame;
-using kit::MissionItem;
-using kit::MissionPoint;
+using formats::AltitudeFrame;
+using formats::MissionItem;
+using formats::MissionPoint;
 
 struct Named {
   Path file;
@@ -38,7 +38,7 @@ void add(Value& map, const char* key, Value value) {
 /// Converts an item to a point of a scenario.
 class Writer {
  public:
-  Writer(const kit::MissionFile& mission, std::string file)
+  Writer(const formats::MissionFile& mission, std::string file)
       : mission_(mission), file_(std::move(file)) {}
 
   Value point(const MissionItem& item) const {
@@ -81,7 +81,7 @@ class Writer {
     return mission_.home->altitude_m + item.at.altitude_m;
   }
 
-  const kit::MissionFile& mission_;
+  const formats::MissionFile& mission_;
   std::string file_;
 };
 
@@ -99,7 +99,7 @@ bool has_place(const Value& map) {
          });
 }
 
-void add_points(Value& scenario, const kit::MissionFile& mission, const std::string& file) {
+void add_points(Value& scenario, const formats::MissionFile& mission, const std::string& file) {
   const std::vector<MissionItem> items = route_items(mission);
   if (items.size() < 2) {
     throw Error(file + ": expected at least two points, found " + std::to_string(items.size()));
@@ -129,7 +129,7 @@ void add_points(Value& scenario, const kit::MissionFile& mission, const std::str
 }
 }  // namespace
 
-std::vector<MissionItem> route_items(const kit::MissionFile& mission) {
+std::vector<MissionItem> route_items(const formats::MissionFile& mission) {
   if (!mission.route_problem.empty()) {
     throw Error(mission.route_problem);
   }
@@ -165,7 +165,7 @@ std::vector<std::string> add_mission(Value& scenario, std::vector<fs::path>& fil
     throw ConfigError(where, "mission", "file not found: '" + file + "'");
   }
   try {
-    const kit::MissionFile mission = kit::read_mission(file);
+    const formats::MissionFile mission = formats::read_mission(file);
     for (const std::string& note : mission.notes) {
       notes.push_back("mission: " + note);
     }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/value.hpp"
 
 namespace altiplan::host {
@@ -18,5 +18,5 @@ std::vector<std::string> add_mission(Value& scenario, std::vector<std::filesyste
 
 /// The items as the points of a route, without a landing straight below the last one. Throws Error
 /// if the file has none, or if they do not form a route.
-std::vector<kit::MissionItem> route_items(const kit::MissionFile& mission);
+std::vector<formats::MissionItem> route_items(const formats::MissionFile& mission);
 }  // namespace altiplan::host

@@ -2,7 +2,7 @@
 #include <map>
 #include <set>
 
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 
@@ -182,7 +182,7 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
   check_points(checker, scenario, tree);
   check_constraints(checker, scenario.constraints, tree);
   check_body(checker, scenario, tree);
-  if (scenario.start_time && !kit::parse_iso_time(*scenario.start_time)) {
+  if (scenario.start_time && !formats::parse_iso_time(*scenario.start_time)) {
     checker.problem(
         place_of(tree, "start_time"), "start_time",
         "expected a time such as 2026-05-01T10:00:00Z, found '" + *scenario.start_time + "'");

@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/config/yaml_reader.hpp"
 
@@ -102,8 +102,8 @@ Value parse(const YamlSource& source, const char* when_empty) {
 
 std::string read_file(const std::filesystem::path& file) {
   try {
-    return kit::read_file(file.string(), kMaxBytes);
-  } catch (const kit::InputError& error) {
+    return formats::read_file(file.string(), kMaxBytes);
+  } catch (const formats::InputError& error) {
     if (is_machine_fault(reading_error(file))) {
       throw MachineFault(error.what());
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/config/overrides.hpp"
 #include "host/config/yaml.hpp"
 #include "host/config/yaml_edit.hpp"
@@ -93,7 +93,7 @@ EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assi
   }
   files_.push_back({pipelines_.front().config.scenario_path, ""});
   for (OpenFile& file : files_) {
-    file.opened = kit::read_file(file.path);
+    file.opened = formats::read_file(file.path);
     trees_.push_back(parse_yaml(file.opened, file.path.string()));
   }
 }

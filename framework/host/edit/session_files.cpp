@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/program.hpp"
 #include "host/config/yaml.hpp"
@@ -39,7 +39,7 @@ fs::path named(const fs::path& file, const std::string& suffix) {
 }
 
 std::string last_line_of(const fs::path& file) {
-  std::string text = kit::read_file(file);
+  std::string text = formats::read_file(file);
   while (text.ends_with('\n')) {
     text.pop_back();
   }
@@ -80,7 +80,7 @@ void EditSession::begin_anew() {
     }
   }
   for (std::size_t n = 0; n <= opened_; ++n) {
-    files_[n].opened = kit::read_file(files_[n].path);
+    files_[n].opened = formats::read_file(files_[n].path);
     trees_[n] = parse_yaml(files_[n].opened, files_[n].path.string());
   }
   edits_ = Edits(std::move(left));
@@ -102,7 +102,7 @@ EditSession::Texts EditSession::changed_texts() const {
     if (text == file.opened) {
       continue;
     }
-    if (kit::read_file(file.path) != file.opened) {
+    if (formats::read_file(file.path) != file.opened) {
       throw Error(
           "'" + file.path.string() +
           "' has been changed by another program: save under another name, or open it anew");
@@ -158,7 +158,7 @@ PageAnswer EditSession::exported(const Json& wish) {
   const std::lock_guard one_at_a_time(commands_);
   const fs::path file = folder_ / "exported";
   run_command(wish, {"export"}, {"--to", format, "--out", file.string()});
-  return {200, "application/octet-stream", kit::read_file(file)};
+  return {200, "application/octet-stream", formats::read_file(file)};
 }
 
 Json EditSession::uploaded(const Json& wish) {

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "altiplan/error.hpp"
+#include "altiplan/formats/geojson.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
-#include "altiplan/kit/formats/geojson.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
 #include "altiplan/world.hpp"
 #include "host/base/words.hpp"
 #include "host/config/yaml.hpp"
@@ -116,7 +116,7 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
   return info;
 }
 
-FileInfo zones_info(const fs::path& file, const std::optional<kit::Airspace>& airspace,
+FileInfo zones_info(const fs::path& file, const std::optional<formats::Airspace>& airspace,
                     Registry& registry) {
   const std::string parameters = zone_parameters(file, false);
   const auto layer = build("zones", file, parameters, registry);
@@ -139,9 +139,9 @@ FileInfo zones_info(const fs::path& file, const std::optional<kit::Airspace>& ai
 
 /// Footprints with heights are buildings.
 FileInfo features_info(const fs::path& file, Registry& registry) {
-  const kit::GeoJson json = kit::read_geojson(file.string());
+  const formats::GeoJson json = formats::read_geojson(file.string());
   std::map<std::string, std::size_t> properties;
-  for (const kit::GeoFeature& feature : json.features) {
+  for (const formats::GeoFeature& feature : json.features) {
     for (const auto& [name, value] : feature.properties) {
       ++properties[name];
     }
@@ -168,16 +168,16 @@ FileInfo features_info(const fs::path& file, Registry& registry) {
 std::optional<FileInfo> text_info(const fs::path& file, Registry& registry) {
   std::string text;
   try {
-    text = kit::read_file(file.string());
-  } catch (const kit::InputError&) {
+    text = formats::read_file(file.string());
+  } catch (const formats::InputError&) {
     return std::nullopt;  // too large for any of them
   }
-  if (const auto airspace = kit::read_airspace(file.string(), text)) {
+  if (const auto airspace = formats::read_airspace(file.string(), text)) {
     return zones_info(file, airspace, registry);
   }
   const std::string extension = file.extension();
-  if (kit::is_mission_file(file.string()) || extension == ".gpx" || extension == ".mission") {
-    return info_of(kit::read_mission(file.string(), text), file.string());
+  if (formats::is_mission_file(file.string()) || extension == ".gpx" || extension == ".mission") {
+    return info_of(formats::read_mission(file.string(), text), file.string());
   }
   if (extension == ".geojson" || extension == ".json") {
     return features_info(file, registry);
@@ -187,7 +187,7 @@ std::optional<FileInfo> text_info(const fs::path& file, Registry& registry) {
 }  // namespace
 
 FileInfo info_of(const fs::path& file, const std::string& crs, Registry& registry) {
-  if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
+  if (const std::string why = formats::why_unreadable(file.string()); !why.empty()) {
     throw Error(file.string() + ": " + why);
   }
   for (const LayerKind& kind : kLayers) {

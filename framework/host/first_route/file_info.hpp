@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/airspace.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/airspace.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "host/plugins/registry.hpp"
 
 namespace altiplan::host {
@@ -24,7 +24,7 @@ struct FileInfo {
 FileInfo info_of(const std::filesystem::path& file, const std::string& crs, Registry& registry);
 
 /// Limits by datum, hours, and extent of published airspace.
-std::vector<std::string> facts_of(const kit::Airspace& airspace);
+std::vector<std::string> facts_of(const formats::Airspace& airspace);
 /// Items, heights, home and fence of a mission.
-FileInfo info_of(const kit::MissionFile& mission, const std::string& file);
+FileInfo info_of(const formats::MissionFile& mission, const std::string& file);
 }  // namespace altiplan::host

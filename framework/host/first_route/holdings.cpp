@@ -10,7 +10,7 @@
 namespace altiplan::host {
 namespace {
 
-using Datum = kit::ZoneLimit::Datum;
+using Datum = formats::ZoneLimit::Datum;
 
 std::string joined(const std::map<std::string, std::size_t>& counts) {
   std::string text;
@@ -20,7 +20,7 @@ std::string joined(const std::map<std::string, std::size_t>& counts) {
   return text;
 }
 
-std::string words(const kit::ZoneLimit& limit) {
+std::string words(const formats::ZoneLimit& limit) {
   switch (limit.datum) {
     case Datum::ground:
       return "above ground";
@@ -41,8 +41,8 @@ class Extent {
     const double turns = box_.is_empty() ? 0 : std::round((box_.min.x() - lon) / 360);
     box_ = box_.with({lon + 360 * turns, lat, 0});
   }
-  void add(const std::vector<kit::Zone>& zones) {
-    for (const kit::Point2& p : kit::corners_of(zones)) {
+  void add(const std::vector<formats::Zone>& zones) {
+    for (const formats::Point2& p : formats::corners_of(zones)) {
       add(p[0], p[1]);
     }
   }
@@ -59,21 +59,21 @@ class Extent {
   Box box_ = Box::empty();
 };
 
-const char* word(kit::MissionItem::Kind kind) {
+const char* word(formats::MissionItem::Kind kind) {
   static constexpr const char* kWords[] = {"take-offs", "waypoints", "loiters", "landings"};
   return kWords[int(kind)];
 }
 
-const char* word(kit::AltitudeFrame frame) {
-  return frame == kit::AltitudeFrame::sea      ? "above sea level"
-         : frame == kit::AltitudeFrame::ground ? "above ground"
-                                               : "above home";
+const char* word(formats::AltitudeFrame frame) {
+  return frame == formats::AltitudeFrame::sea      ? "above sea level"
+         : frame == formats::AltitudeFrame::ground ? "above ground"
+                                                   : "above home";
 }
 
 /// "heights 50 to 80 m above home"
-std::vector<std::string> heights_of(const kit::MissionFile& mission) {
+std::vector<std::string> heights_of(const formats::MissionFile& mission) {
   std::map<std::string, std::pair<double, double>> ranges;
-  for (const kit::MissionItem& item : mission.items) {
+  for (const formats::MissionItem& item : mission.items) {
     const double z = item.at.altitude_m;
     const auto [found, is_new] = ranges.try_emplace(word(item.at.frame), z, z);
     found->second = {std::min(found->second.first, z), std::max(found->second.second, z)};
@@ -86,9 +86,9 @@ std::vector<std::string> heights_of(const kit::MissionFile& mission) {
   return texts;
 }
 
-void add_fence(const kit::MissionFile& mission, Extent& extent, FileInfo& info) {
+void add_fence(const formats::MissionFile& mission, Extent& extent, FileInfo& info) {
   std::size_t keep_in = 0;
-  for (const kit::Zone& zone : mission.zones) {
+  for (const formats::Zone& zone : mission.zones) {
     keep_in += zone.keeps_in();
   }
   extent.add(mission.zones);
@@ -99,15 +99,15 @@ void add_fence(const kit::MissionFile& mission, Extent& extent, FileInfo& info) 
 }
 }  // namespace
 
-std::vector<std::string> facts_of(const kit::Airspace& airspace) {
+std::vector<std::string> facts_of(const formats::Airspace& airspace) {
   std::map<std::string, std::size_t> lower;
   std::map<std::string, std::size_t> upper;
   std::size_t with_hours = 0;
   std::size_t with_period = 0;
   Extent extent;
   extent.add(airspace.zones);
-  for (const kit::Zone& zone : airspace.zones) {
-    for (const kit::ZoneVolume& volume : zone.volumes) {
+  for (const formats::Zone& zone : airspace.zones) {
+    for (const formats::ZoneVolume& volume : zone.volumes) {
       ++lower[words(volume.lower)];
       ++upper[words(volume.upper)];
     }
@@ -128,12 +128,12 @@ std::vector<std::string> facts_of(const kit::Airspace& airspace) {
   return facts;
 }
 
-FileInfo info_of(const kit::MissionFile& mission, const std::string& file) {
+FileInfo info_of(const formats::MissionFile& mission, const std::string& file) {
   FileInfo info;
   info.kind = mission.items.empty() && !mission.zones.empty() ? "fence" : "mission";
   std::map<std::string, std::size_t> kinds;
   Extent extent;
-  for (const kit::MissionItem& item : mission.items) {
+  for (const formats::MissionItem& item : mission.items) {
     ++kinds[word(item.kind)];
     extent.add(item.at.lon, item.at.lat);
   }

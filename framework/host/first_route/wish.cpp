@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "host/base/words.hpp"
 
 namespace altiplan::host {
@@ -22,7 +22,7 @@ void expect_words(const RouteWish& wish) {
   if (wish.planner == "") {
     throw Error("--planner: expected the name of a planner, found nothing");
   }
-  if (wish.start_time && !kit::parse_iso_time(*wish.start_time)) {
+  if (wish.start_time && !formats::parse_iso_time(*wish.start_time)) {
     throw Error("--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
                 *wish.start_time + "'");
   }

@@ -5,37 +5,37 @@
 #include <tuple>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/airspace.hpp"
-#include "altiplan/kit/formats/geojson.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/airspace.hpp"
+#include "altiplan/formats/geojson.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 
 namespace altiplan::host {
 
 namespace {
 
 /// GeoJSON, which is what is left where the content tells of no other kind.
-kit::GeoJson read_features(const std::filesystem::path& file, const std::string& text) {
+formats::GeoJson read_features(const std::filesystem::path& file, const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == text.npos || text[first] != '{') {
     throw Error(file.string() +
                 ": expected zones: published airspace (ED-269, ED-318, AIXM 5.1, OpenAir, UAS "
                 "facility maps), GeoJSON, KML, or a fence (.plan, .waypoints)");
   }
-  return kit::read_geojson(file.string());
+  return formats::read_geojson(file.string());
 }
 }  // namespace
 
 std::string zone_parameters(const std::filesystem::path& file, bool has_start_time) {
-  const std::string text = kit::read_file(file.string());
-  if (kit::read_airspace(file.string(), text)) {
+  const std::string text = formats::read_file(file.string());
+  if (formats::read_airspace(file.string(), text)) {
     return "";  // it says what its limits and hours are
   }
-  if (kit::is_mission_file(file.string())) {
-    kit::read_mission(file.string(), text);
+  if (formats::is_mission_file(file.string())) {
+    formats::read_mission(file.string(), text);
     return "";
   }
-  const kit::GeoJson json = read_features(file, text);
+  const formats::GeoJson json = read_features(file, text);
   std::string parameters;
   for (const auto& [key, property, is_time] : {std::tuple("floor_property", "floor_m", false),
                                                {"ceiling_property", "ceiling_m", false},
@@ -43,7 +43,7 @@ std::string zone_parameters(const std::filesystem::path& file, bool has_start_ti
                                                {"until_property", "until", true},
                                                {"from_property", "timeBegin", true},
                                                {"until_property", "timeEnd", true}}) {
-    const auto has = [property = property](const kit::GeoFeature& feature) {
+    const auto has = [property = property](const formats::GeoFeature& feature) {
       return feature.properties.contains(property);
     };
     if ((!is_time || has_start_time) && parameters.find(key) == parameters.npos &&

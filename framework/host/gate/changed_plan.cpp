@@ -97,12 +97,12 @@ std::string changed_lines(const std::string& text, const std::vector<ChangedItem
 }
 }  // namespace
 
-std::string changed_plan(const std::string& text, kit::MissionFile::Format format,
+std::string changed_plan(const std::string& text, formats::MissionFile::Format format,
                          const std::vector<ChangedItem>& changes) {
   switch (format) {
-    case kit::MissionFile::Format::qgc_plan:
+    case formats::MissionFile::Format::qgc_plan:
       return changed_json(text, changes);
-    case kit::MissionFile::Format::waypoints:
+    case formats::MissionFile::Format::waypoints:
       return changed_lines(text, changes);
     default:
       throw Error("expected a .plan or .waypoints file: in other formats no item can be changed");

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 
 namespace altiplan::host {
 
@@ -19,6 +19,6 @@ struct ChangedItem {
 
 /// The text of a `.plan` or `.waypoints` file with items changed and all else as it is. Throws
 /// Error for other formats.
-std::string changed_plan(const std::string& text, kit::MissionFile::Format format,
+std::string changed_plan(const std::string& text, formats::MissionFile::Format format,
                          const std::vector<ChangedItem>& changes);
 }  // namespace altiplan::host

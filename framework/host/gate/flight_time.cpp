@@ -7,16 +7,16 @@
 
 namespace altiplan::host {
 
-using kit::MissionItem;
+using formats::MissionItem;
 
-std::vector<double> item_times(const kit::MissionFile& plan, double speed_mps) {
+std::vector<double> item_times(const formats::MissionFile& plan, double speed_mps) {
   constexpr double kVertical = 1;  // m/s
   constexpr double kMetresPerDegree = 111195;
   const double home = plan.home ? plan.home->altitude_m : 0;
   const auto height = [&](const MissionItem& item) {
-    return item.kind == MissionItem::Kind::land       ? 0
-           : item.at.frame == kit::AltitudeFrame::sea ? item.at.altitude_m - home
-                                                      : item.at.altitude_m;
+    return item.kind == MissionItem::Kind::land           ? 0
+           : item.at.frame == formats::AltitudeFrame::sea ? item.at.altitude_m - home
+                                                          : item.at.altitude_m;
   };
   std::vector<double> times;
   double seconds = 0;
@@ -39,7 +39,7 @@ std::vector<double> item_times(const kit::MissionFile& plan, double speed_mps) {
   return times;
 }
 
-double flight_time(const kit::MissionFile& plan, double speed_mps) {
+double flight_time(const formats::MissionFile& plan, double speed_mps) {
   const std::vector<double> times = item_times(plan, speed_mps);
   return times.empty() ? 0 : times.back();
 }

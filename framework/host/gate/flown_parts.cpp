@@ -10,8 +10,8 @@
 namespace altiplan::host {
 namespace {
 
-using kit::MissionItem;
-using kit::MissionPoint;
+using formats::MissionItem;
+using formats::MissionPoint;
 using Kind = MissionItem::Kind;
 
 /// Height of the ground there, else of home, else of the point.
@@ -29,12 +29,12 @@ std::string type_of(const MissionItem& item) {
 }
 
 /// A return at the end as a landing at home.
-void end_at_home(kit::MissionFile& plan) {
+void end_at_home(formats::MissionFile& plan) {
   if (plan.moves.empty() || !plan.home || plan.items.empty()) {
     return;
   }
-  const kit::MissionMove& last = plan.moves.back();
-  if (last.command == kit::MissionMove::kReturn && last.after == plan.items.size() &&
+  const formats::MissionMove& last = plan.moves.back();
+  if (last.command == formats::MissionMove::kReturn && last.after == plan.items.size() &&
       plan.items.back().kind != Kind::land) {
     MissionItem landing{Kind::land, *plan.home, 0, last.place};
     landing.number = last.number;
@@ -47,7 +47,7 @@ void end_at_home(kit::MissionFile& plan) {
 /// Splits a mission into its route and what is no leg of it.
 class Splitter {
  public:
-  Splitter(kit::MissionFile plan, const World& world) : plan_(std::move(plan)), world_(world) {}
+  Splitter(formats::MissionFile plan, const World& world) : plan_(std::move(plan)), world_(world) {}
 
   FlownParts parts() {
     end_at_home(plan_);
@@ -135,13 +135,13 @@ class Splitter {
     const bool is_flown_to = is_elsewhere && !plan_.is_wing;
     add(landing, false, {x, y, 0}, is_flown_to ? Vec3(x, y, before.z()) : before);
     if (is_flown_to) {
-      landing.at = {landing.at.lon, landing.at.lat, before.z(), kit::AltitudeFrame::sea};
+      landing.at = {landing.at.lon, landing.at.lat, before.z(), formats::AltitudeFrame::sea};
     } else {
       plan_.items.pop_back();
     }
   }
 
-  kit::MissionFile plan_;
+  formats::MissionFile plan_;
   const World& world_;
   FlownParts parts_;
 };
@@ -152,16 +152,16 @@ std::string name_of_item(const MissionItem& item) {
                          : item.place;
 }
 
-std::string name_of_move(const kit::MissionMove& move) {
-  const std::string what = move.command == kit::MissionMove::kReturn ? "return to launch"
-                           : move.command == 82                      ? "spline"
-                           : move.command == 177                     ? "jump"
-                           : move.command == 0                       ? "complex item"
+std::string name_of_move(const formats::MissionMove& move) {
+  const std::string what = move.command == formats::MissionMove::kReturn ? "return to launch"
+                           : move.command == 82                          ? "spline"
+                           : move.command == 177                         ? "jump"
+                           : move.command == 0                           ? "complex item"
                                                : "command " + std::to_string(move.command);
   return (move.number > 0 ? "item " + std::to_string(move.number) : move.place) + " (" + what + ")";
 }
 
-FlownParts flown_parts(const kit::MissionFile& plan, const World& world) {
+FlownParts flown_parts(const formats::MissionFile& plan, const World& world) {
   return plan.items.empty() ? FlownParts{plan, {}, {}} : Splitter(plan, world).parts();
 }
 }  // namespace altiplan::host

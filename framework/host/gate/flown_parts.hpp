@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/leg.hpp"
 #include "altiplan/world.hpp"
 
@@ -29,15 +29,15 @@ struct Way {
 
 /// A mission as it is flown.
 struct FlownParts {
-  kit::MissionFile route;  ///< without what is no leg between two items
+  formats::MissionFile route;  ///< without what is no leg between two items
   std::vector<Passage> passages;
   std::vector<Way> ways;
 };
 
 /// Throws Error naming the item whose place in the world is unknown.
-FlownParts flown_parts(const kit::MissionFile& plan, const World& world);
+FlownParts flown_parts(const formats::MissionFile& plan, const World& world);
 
 /// "item 3 (waypoint)" as ground stations number it, "point 3" where the file numbers nothing.
-std::string name_of_item(const kit::MissionItem& item);
-std::string name_of_move(const kit::MissionMove& move);
+std::string name_of_item(const formats::MissionItem& item);
+std::string name_of_move(const formats::MissionMove& move);
 }  // namespace altiplan::host

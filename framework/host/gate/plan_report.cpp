@@ -14,8 +14,8 @@
 namespace altiplan::host {
 namespace {
 
-using kit::MissionItem;
-using kit::MissionPoint;
+using formats::MissionItem;
+using formats::MissionPoint;
 using Kind = MissionItem::Kind;
 
 /// True if the violation is of a layer with ground.
@@ -220,8 +220,8 @@ void add_ways(PlanReport& report, const Request& request) {
   }
 }
 
-void add_moves(PlanReport& report, const kit::MissionFile& plan) {
-  for (const kit::MissionMove& move : plan.moves) {
+void add_moves(PlanReport& report, const formats::MissionFile& plan) {
+  for (const formats::MissionMove& move : plan.moves) {
     Violation violation;
     violation.constraint = "not_judged";
     violation.message = "where this flies is not judged: replace it by waypoints";
@@ -230,7 +230,7 @@ void add_moves(PlanReport& report, const kit::MissionFile& plan) {
 }
 
 /// What is judged by what the mission says, though the vehicle may do otherwise.
-void note_unknown(const kit::MissionFile& plan, std::vector<std::string>& notes) {
+void note_unknown(const formats::MissionFile& plan, std::vector<std::string>& notes) {
   if (!plan.items.empty() && plan.items.front().kind != Kind::takeoff) {
     notes.emplace_back("the mission has no take-off: the way from home is not judged");
   }
@@ -241,10 +241,10 @@ void note_unknown(const kit::MissionFile& plan, std::vector<std::string>& notes)
   }
 }
 
-void add_home(PlanReport& report, const kit::MissionFile& plan, const World& world) {
+void add_home(PlanReport& report, const formats::MissionFile& plan, const World& world) {
   const auto relative =
       std::count_if(plan.items.begin(), plan.items.end(), [](const MissionItem& item) {
-        return item.at.frame == kit::AltitudeFrame::home && item.kind != Kind::land;
+        return item.at.frame == formats::AltitudeFrame::home && item.kind != Kind::land;
       });
   if (!plan.home || !world.frame().has_position()) {
     return;
@@ -272,7 +272,7 @@ void add_home(PlanReport& report, const kit::MissionFile& plan, const World& wor
 }
 
 /// Throws Error if no position of the mission has ground below it.
-void expect_on_ground(const kit::MissionFile& plan, const World& world) {
+void expect_on_ground(const formats::MissionFile& plan, const World& world) {
   const auto has_ground = [&](double lon, double lat) {
     const auto [x, y] = world.frame().to_local(lon, lat);
     return world.ground(x, y).has_value();
@@ -314,13 +314,13 @@ Bonds PlanReport::bonds() const {
   const std::vector<MissionItem>& items = imported.items;
   Bonds bonds;
   for (const MissionItem& item : items) {
-    bonds.follows_ground.push_back(item.at.frame == kit::AltitudeFrame::ground);
+    bonds.follows_ground.push_back(item.at.frame == formats::AltitudeFrame::ground);
   }
   bonds.last_is_led = items.size() > 1 && items.back().kind == Kind::land;
   return bonds;
 }
 
-void expect_route(const std::string& file, const kit::MissionFile& plan) {
+void expect_route(const std::string& file, const formats::MissionFile& plan) {
   if (!plan.route_problem.empty()) {
     throw Error(file + ": " + plan.route_problem);
   }
@@ -332,8 +332,8 @@ void expect_route(const std::string& file, const kit::MissionFile& plan) {
   }
 }
 
-PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, const Mission& world,
-                      bool own_ends) {
+PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
+                      const Mission& world, bool own_ends) {
   PlanReport report;
   report.file = file;
   Request request = world.request;
@@ -347,7 +347,7 @@ PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, con
   }
   report.passages = std::move(parts.passages);
   report.ways = std::move(parts.ways);
-  const kit::MissionFile& flown = parts.route;
+  const formats::MissionFile& flown = parts.route;
   report.imported = route_in(flown, world.truth, request, file);
   const Route& route = report.imported.route;
   if (own_ends) {

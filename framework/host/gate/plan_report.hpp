@@ -45,7 +45,7 @@ struct PlanReport {
 };
 
 /// Throws Error, beginning with `file`, naming what a mission without a route holds instead.
-void expect_route(const std::string& file, const kit::MissionFile& plan);
+void expect_route(const std::string& file, const formats::MissionFile& plan);
 
 /// Judges the mission's route and, by the layers but the ground, its climb from home and its
 /// descent to land. A landing that is not below the item before it, and a return at the end, are
@@ -54,6 +54,6 @@ void expect_route(const std::string& file, const kit::MissionFile& plan);
 /// commands that fly somewhere, and heights relative to a home that is more than kHomeTolerance off
 /// the ground, are findings. Throws Error for a mission wholly beside the ground. With `own_ends`
 /// the route need not begin and end where the world's scenario says. Messages begin with `file`.
-PlanReport judge_plan(const std::string& file, const kit::MissionFile& plan, const Mission& world,
-                      bool own_ends);
+PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
+                      const Mission& world, bool own_ends);
 }  // namespace altiplan::host

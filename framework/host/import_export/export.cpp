@@ -14,8 +14,8 @@
 namespace altiplan::host {
 namespace {
 
-using kit::AltitudeFrame;
-using Format = kit::MissionFile::Format;
+using formats::AltitudeFrame;
+using Format = formats::MissionFile::Format;
 
 /// The problem of the vertical climb and descent of what can hover, which are not part of the
 /// route: a layer that they come too near to, except the ground, where they begin and end; "" if
@@ -42,8 +42,8 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
 }
 
 /// The mission without its items.
-kit::MissionFile frame_of(const ExportSource& source, const Placing& place, Format format) {
-  kit::MissionFile file;
+formats::MissionFile frame_of(const ExportSource& source, const Placing& place, Format format) {
+  formats::MissionFile file;
   file.format = format;
   file.name = source.name;
   file.home = place.home();
@@ -90,7 +90,7 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
 }
 
 /// Adds the zones; reports it if the format cannot hold them.
-void add_zones(const Mission& mission, const Route& route, kit::MissionFile& file,
+void add_zones(const Mission& mission, const Route& route, formats::MissionFile& file,
                std::vector<std::string>& messages) {
   const World& world = mission.known;
   const bool flat = file.format == Format::qgc_plan;

@@ -13,8 +13,8 @@ namespace altiplan::host {
 
 struct ExportOptions {
   /// None: CSV, which needs no georeference.
-  std::optional<kit::MissionFile::Format> format;
-  kit::AltitudeFrame altitude = kit::AltitudeFrame::sea;
+  std::optional<formats::MissionFile::Format> format;
+  formats::AltitudeFrame altitude = formats::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
   /// Turns as circles where an autopilot flies them so; else all as points.

@@ -11,8 +11,8 @@
 namespace altiplan::host {
 namespace {
 
-using kit::MissionItem;
-using Format = kit::MissionFile::Format;
+using formats::MissionItem;
+using Format = formats::MissionFile::Format;
 
 /// The first suits autopilots, which store degrees to seven decimals (1 cm); the last matches the
 /// judge's tolerance.

@@ -17,7 +17,7 @@ void note_autopilots(const WrittenRoute& written, std::vector<std::string>& note
   std::size_t turns = 0;
   for (const MissionPlace& place : written.places) {
     if (place.circle) {
-      const bool counts_turns = place.circle->until == kit::MissionCircle::Until::turns;
+      const bool counts_turns = place.circle->until == formats::MissionCircle::Until::turns;
       const double unit = counts_turns && place.circle->radius_m > 255 ? 10 : 1;
       tighter = std::max(tighter, std::fmod(place.circle->radius_m, unit));
       turns += counts_turns ? 1 : 0;

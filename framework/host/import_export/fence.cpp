@@ -11,17 +11,17 @@ namespace {
 
 /// A zone of one volume.
 struct WorldZone {
-  kit::Zone zone;
+  formats::Zone zone;
   Shape flat;  ///< without vertical limits, and without a keep-out zone's holes
 };
 
-kit::ZoneLimit limit(double z) {
-  return std::isfinite(z) ? kit::ZoneLimit::sea(z) : kit::ZoneLimit{};
+formats::ZoneLimit limit(double z) {
+  return std::isfinite(z) ? formats::ZoneLimit::sea(z) : formats::ZoneLimit{};
 }
 
-kit::Ring lonlat(const Frame& frame, const kit::Ring& ring) {
-  kit::Ring result;
-  for (const kit::Point2& p : ring) {
+formats::Ring lonlat(const Frame& frame, const formats::Ring& ring) {
+  formats::Ring result;
+  for (const formats::Point2& p : ring) {
     result.push_back(frame.to_lonlat(p[0], p[1]));
   }
   return result;
@@ -49,8 +49,8 @@ WorldZone circle_of(const Frame& frame, double x, double y, double radius, bool 
 }
 
 WorldZone prism_of(const Frame& frame, Prism prism, bool keep_in) {
-  kit::Polygon polygon{lonlat(frame, prism.outline), {}};
-  for (const kit::Ring& hole : prism.holes) {
+  formats::Polygon polygon{lonlat(frame, prism.outline), {}};
+  for (const formats::Ring& hole : prism.holes) {
     polygon.holes.push_back(lonlat(frame, hole));
   }
   WorldZone result;
@@ -83,7 +83,8 @@ WorldZone zone_of(const Frame& frame, const Drawn& drawn) {
                       keep_in);
   }
   result.zone.name = drawn.name;
-  result.zone.restriction = keep_in ? kit::Restriction::keep_in : kit::Restriction::keep_out;
+  result.zone.restriction =
+      keep_in ? formats::Restriction::keep_in : formats::Restriction::keep_out;
   result.zone.volumes.front().lower = limit(box.min.z());
   result.zone.volumes.front().upper = limit(box.max.z());
   return result;
@@ -131,9 +132,10 @@ Fence zones_of(const World& world) {
 Fence flat_fence_of(const World& world, const Polyline& route) {
   Fence fence;
   for (const WorldZone& zone : all_zones(world)) {
-    const kit::ZoneVolume& volume = zone.zone.volumes.front();
+    const formats::ZoneVolume& volume = zone.zone.volumes.front();
     const bool keeps_in = zone.zone.keeps_in();
-    const bool has_limits = volume.lower != kit::ZoneLimit{} || volume.upper != kit::ZoneLimit{};
+    const bool has_limits =
+        volume.lower != formats::ZoneLimit{} || volume.upper != formats::ZoneLimit{};
     const std::string name = "zone '" + zone.zone.name + "'";
     if (!keeps_in && crosses(zone.flat, route)) {
       fence.notes.push_back(name + " is left out of the fence: the route passes " +
@@ -151,7 +153,7 @@ Fence flat_fence_of(const World& world, const Polyline& route) {
     fence.zones.push_back(zone.zone);
   }
   const auto inside = std::count_if(fence.zones.begin(), fence.zones.end(),
-                                    [](const kit::Zone& zone) { return zone.keeps_in(); });
+                                    [](const formats::Zone& zone) { return zone.keeps_in(); });
   if (inside > 1) {
     fence.notes.push_back(std::to_string(inside) +
                           " keep-in zones: autopilots differ on whether one of them must hold the "

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/route.hpp"
 #include "altiplan/world.hpp"
 
@@ -12,7 +12,7 @@ namespace altiplan::host {
 
 /// The keep-out and keep-in zones of a world, in longitude and latitude.
 struct Fence {
-  std::vector<kit::Zone> zones;
+  std::vector<formats::Zone> zones;
   std::vector<std::string> notes;  ///< what the format cannot express
 };
 

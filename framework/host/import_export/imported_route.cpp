@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/config/mission_key.hpp"
 #include "host/import_export/joined_route.hpp"
 #include "host/import_export/route_csv.hpp"
@@ -15,9 +15,9 @@
 namespace altiplan::host {
 namespace {
 
-using kit::AltitudeFrame;
-using kit::MissionItem;
-using kit::MissionPoint;
+using formats::AltitudeFrame;
+using formats::MissionItem;
+using formats::MissionPoint;
 
 bool is_csv(const std::string& file) { return std::filesystem::path(file).extension() == ".csv"; }
 
@@ -108,8 +108,8 @@ Vec3 to_local(const MissionPoint& point, const std::optional<MissionPoint>& home
   return {x, y, home->altitude_m + point.altitude_m};
 }
 
-ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Request& request,
-                       const std::string& file) {
+ImportedRoute route_in(const formats::MissionFile& mission, const World& world,
+                       const Request& request, const std::string& file) {
   ImportedRoute result;
   result.notes = mission.notes;
   std::vector<MissionPlace> places;
@@ -155,7 +155,7 @@ ImportedRoute route_in(const kit::MissionFile& mission, const World& world, cons
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
                                   const World& world, const Request& request) {
   if (!is_csv(file)) {
-    return route_in(kit::read_mission(file, text), world, request, file);
+    return route_in(formats::read_mission(file, text), world, request, file);
   }
   Polyline points = read_route_csv(file, text);
   expect_reachable(points, file);
@@ -169,12 +169,12 @@ ImportedRoute read_imported_route(const std::string& file, const Mission& missio
   const Request& request = mission.request;
   const World& world = mission.truth;
   if (is_csv(file)) {
-    return read_imported_route(file, kit::read_file(file), world, request);
+    return read_imported_route(file, formats::read_file(file), world, request);
   }
   const std::filesystem::path ending = std::filesystem::path(file).extension();
-  if (kit::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||
+  if (formats::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||
       ending == ".mission") {
-    return route_in(kit::read_mission(file), world, request, file);
+    return route_in(formats::read_mission(file), world, request, file);
   }
   const std::string expected =
       "a route as a list of [x, y, z] in metres, or a mission whose name ends in .plan, "

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/world.hpp"
 #include "host/mission/mission.hpp"
 
@@ -16,7 +16,7 @@ struct ImportedRoute {
   Route route;
   std::vector<std::string> notes;  ///< what was ignored, how heights were interpreted
   /// Of a mission: the item of each waypoint; a circle may have two.
-  std::vector<kit::MissionItem> items{};
+  std::vector<formats::MissionItem> items{};
 };
 
 /// Maximum rounding error of degrees with seven decimals, in metres: a first point this near to the
@@ -25,13 +25,13 @@ inline constexpr double kRoundingReach = 0.02;
 
 /// The point in local metres; `home` is for heights relative to it. Throws Error in a world without
 /// a georeference, or without ground below the point if that is needed.
-Vec3 to_local(const kit::MissionPoint& point, const std::optional<kit::MissionPoint>& home,
+Vec3 to_local(const formats::MissionPoint& point, const std::optional<formats::MissionPoint>& home,
               const World& world);
 
 /// A mission's route in the world, as joined_route describes it; messages begin with `file`. The
 /// request gives the start and the limits on climb and descent.
-ImportedRoute route_in(const kit::MissionFile& mission, const World& world, const Request& request,
-                       const std::string& file);
+ImportedRoute route_in(const formats::MissionFile& mission, const World& world,
+                       const Request& request, const std::string& file);
 
 /// Reads a route in any format that altiplan writes: JSON ([[x, y, z], …] or a result), CSV, or a
 /// mission file. Undoes the rounding of the start except in JSON.

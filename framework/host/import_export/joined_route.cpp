@@ -8,7 +8,7 @@
 namespace altiplan::host {
 namespace {
 
-using Until = kit::MissionCircle::Until;
+using Until = formats::MissionCircle::Until;
 
 /// Difference of two heights this small is a rounding error of the file, metres.
 constexpr double kSameHeight = 0.02;
@@ -163,7 +163,7 @@ class Joining {
   }
 
   void turn(const MissionPlace& place, double entry, double exit) {
-    const kit::MissionCircle& circle = *place.circle;
+    const formats::MissionCircle& circle = *place.circle;
     const double climb = place.at.z() - result_.route.back().z();
     const double first = full_turn(circle.sense * (exit - entry));
     const double min_turn = circle.until == Until::turns ? 2 * kPi * circle.turns

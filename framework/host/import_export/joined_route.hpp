@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/limits.hpp"
 #include "altiplan/route.hpp"
 
@@ -13,7 +13,7 @@ namespace altiplan::host {
 /// An item of a mission in local metres: a waypoint, or a circle around it.
 struct MissionPlace {
   Vec3 at{0, 0, 0};
-  std::optional<kit::MissionCircle> circle{};
+  std::optional<formats::MissionCircle> circle{};
 };
 
 struct JoinedRoute {

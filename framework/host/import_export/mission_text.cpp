@@ -30,28 +30,28 @@ double rounded(double value, int decimals) {
   return result;
 }
 
-const char* name(kit::AltitudeFrame frame) {
+const char* name(formats::AltitudeFrame frame) {
   switch (frame) {
-    case kit::AltitudeFrame::sea:
+    case formats::AltitudeFrame::sea:
       return "sea";
-    case kit::AltitudeFrame::ground:
+    case formats::AltitudeFrame::ground:
       return "ground";
-    case kit::AltitudeFrame::home:
+    case formats::AltitudeFrame::home:
       break;
   }
   return "home";
 }
 
-kit::Polygon polygon_of(const kit::Zone& zone) {
+formats::Polygon polygon_of(const formats::Zone& zone) {
   constexpr int kCorners = 64;
-  const kit::ZoneVolume& circle = zone.volumes.front();
+  const formats::ZoneVolume& circle = zone.volumes.front();
   if (!circle.polygon.outline.empty()) {
     return circle.polygon;
   }
   const Frame frame = Frame::geographic(circle.centre[0], circle.centre[1], circle.centre[1]);
   const double radius =
       zone.keeps_in() ? circle.radius_m : circle.radius_m / std::cos(kPi / kCorners);
-  kit::Polygon polygon;
+  formats::Polygon polygon;
   for (int n = 0; n < kCorners; ++n) {
     const double angle = 2 * kPi * n / kCorners;
     polygon.outline.push_back(frame.to_lonlat(radius * std::cos(angle), radius * std::sin(angle)));
@@ -60,7 +60,7 @@ kit::Polygon polygon_of(const kit::Zone& zone) {
 }
 
 std::string mission_text(const MissionText& mission) {
-  using Format = kit::MissionFile::Format;
+  using Format = formats::MissionFile::Format;
   switch (mission.mission.format) {
     case Format::qgc_plan:
       return qgc_plan_text(mission);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "altiplan/kit/formats/mission_file.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "host/config/scenario_file.hpp"
 
 namespace altiplan::host {
@@ -18,7 +18,8 @@ struct Decimals {
 
 /// A mission and the settings of its text.
 struct MissionText {
-  kit::MissionFile mission;  ///< its format is the one to write; all items have one altitude frame
+  formats::MissionFile
+      mission;  ///< its format is the one to write; all items have one altitude frame
   double speed_mps = 15;
   VehicleType vehicle = VehicleType::copter;
   double climb_deg = 10;  ///< of an aeroplane's take-off
@@ -43,7 +44,7 @@ std::string rounded_text(double value, int decimals);
 /// The value of that text.
 double rounded(double value, int decimals);
 /// "sea", "ground" or "home".
-const char* name(kit::AltitudeFrame frame);
+const char* name(formats::AltitudeFrame frame);
 /// The zone's polygon; of a circle, one of 64 corners, around it to keep out, within it to keep in.
-kit::Polygon polygon_of(const kit::Zone& zone);
+formats::Polygon polygon_of(const formats::Zone& zone);
 }  // namespace altiplan::host

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "host/import_export/mission_text.hpp"
 
 namespace altiplan::host {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-using kit::AltitudeFrame;
-using kit::MissionItem;
-using kit::MissionPoint;
-using kit::Zone;
+using formats::AltitudeFrame;
+using formats::MissionItem;
+using formats::MissionPoint;
+using formats::Zone;
 
 constexpr const char* kXml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
@@ -37,15 +37,16 @@ const char* words_of(AltitudeFrame frame) {
 const char* role_of(const Zone& zone) { return zone.keeps_in() ? "keep_in" : "keep_out"; }
 
 /// Metres above sea level; none: no limit.
-std::optional<double> altitude_of(const kit::ZoneLimit& limit) {
-  return limit.datum == kit::ZoneLimit::Datum::none ? std::nullopt : std::optional(limit.metres);
+std::optional<double> altitude_of(const formats::ZoneLimit& limit) {
+  return limit.datum == formats::ZoneLimit::Datum::none ? std::nullopt
+                                                        : std::optional(limit.metres);
 }
 
 /// Writes KML with the indentation of its element.
 class KmlWriter {
  public:
   explicit KmlWriter(const MissionText& text) : decimals_(text.decimals) {
-    const kit::MissionFile& mission = text.mission;
+    const formats::MissionFile& mission = text.mission;
     const AltitudeFrame frame = mission.items.front().at.frame;
     out_ = kXml;
     out_ += "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n";
@@ -62,12 +63,12 @@ class KmlWriter {
   const std::string& text() const { return out_; }
 
  private:
-  std::string coordinate(const kit::Point2& p, double altitude) const {
+  std::string coordinate(const formats::Point2& p, double altitude) const {
     return rounded_text(p[0], decimals_.degrees) + "," + rounded_text(p[1], decimals_.degrees) +
            "," + rounded_text(altitude, decimals_.metres);
   }
 
-  void add_route(const kit::MissionFile& mission, AltitudeFrame frame) {
+  void add_route(const formats::MissionFile& mission, AltitudeFrame frame) {
     out_ += "  <Placemark>\n    <name>route</name>\n    <description>altitudes are metres " +
             std::string(words_of(frame)) +
             "</description>\n    <LineString>\n      <altitudeMode>" +
@@ -79,7 +80,7 @@ class KmlWriter {
     out_ += "      </coordinates>\n    </LineString>\n  </Placemark>\n";
   }
 
-  void add_ring(const char* element, const kit::Ring& ring, double altitude) {
+  void add_ring(const char* element, const formats::Ring& ring, double altitude) {
     out_ += std::string("      <") + element + "><LinearRing><coordinates>\n";
     for (std::size_t n = 0; n <= ring.size(); ++n) {
       out_ += "        " + coordinate(ring[n % ring.size()], altitude) + "\n";
@@ -108,10 +109,10 @@ class KmlWriter {
     out_ += "    </ExtendedData>\n    <Polygon>\n";
     out_ += ceiling ? "      <extrude>1</extrude>\n      <altitudeMode>absolute</altitudeMode>\n"
                     : "      <altitudeMode>clampToGround</altitudeMode>\n";
-    const kit::Polygon polygon = polygon_of(zone);
+    const formats::Polygon polygon = polygon_of(zone);
     const double altitude = ceiling.value_or(0);
     add_ring("outerBoundaryIs", polygon.outline, altitude);
-    for (const kit::Ring& hole : polygon.holes) {
+    for (const formats::Ring& hole : polygon.holes) {
       add_ring("innerBoundaryIs", hole, altitude);
     }
     out_ += "    </Polygon>\n  </Placemark>\n";
@@ -121,22 +122,22 @@ class KmlWriter {
   std::string out_;
 };
 
-OrderedJson ring_json(const kit::Ring& ring, int decimals) {
+OrderedJson ring_json(const formats::Ring& ring, int decimals) {
   OrderedJson corners = OrderedJson::array();
   for (std::size_t n = 0; n <= ring.size(); ++n) {
-    const kit::Point2& p = ring[n % ring.size()];
+    const formats::Point2& p = ring[n % ring.size()];
     corners.push_back({rounded(p[0], decimals), rounded(p[1], decimals)});
   }
   return corners;
 }
 
 OrderedJson zone_json(const Zone& zone, const Decimals& decimals) {
-  const kit::Polygon polygon = polygon_of(zone);
+  const formats::Polygon polygon = polygon_of(zone);
   OrderedJson rings = OrderedJson::array({ring_json(polygon.outline, decimals.degrees)});
-  for (const kit::Ring& hole : polygon.holes) {
+  for (const formats::Ring& hole : polygon.holes) {
     rings.push_back(ring_json(hole, decimals.degrees));
   }
-  const auto height = [&](const kit::ZoneLimit& limit) {
+  const auto height = [&](const formats::ZoneLimit& limit) {
     const std::optional<double> value = altitude_of(limit);
     return value ? OrderedJson(rounded(*value, decimals.metres)) : OrderedJson(nullptr);
   };
@@ -154,7 +155,7 @@ std::string iso_time(const MissionText& text, std::size_t n) {
   if (!text.start_time_s || n >= text.times_s.size()) {
     return "";
   }
-  return kit::iso_time(*text.start_time_s + text.times_s[n]);
+  return formats::iso_time(*text.start_time_s + text.times_s[n]);
 }
 }  // namespace
 
@@ -181,7 +182,7 @@ std::string gpx_text(const MissionText& text) {
 
 std::string geojson_text(const MissionText& text) {
   const Decimals& decimals = text.decimals;
-  const kit::MissionFile& mission = text.mission;
+  const formats::MissionFile& mission = text.mission;
   const AltitudeFrame frame = mission.items.front().at.frame;
   OrderedJson line = OrderedJson::array();
   for (const MissionItem& item : mission.items) {

@@ -93,9 +93,9 @@ SortedJson rally_json(const std::vector<PlanItem>& rally) {
 }
 
 /// Ground stations need a home: without one it is below the first waypoint, at sea level.
-kit::MissionPoint home_of(const Plan& plan) {
+formats::MissionPoint home_of(const Plan& plan) {
   if (plan.home || plan.items.empty()) {
-    return plan.home.value_or(kit::MissionPoint());
+    return plan.home.value_or(formats::MissionPoint());
   }
   const PlanItem& first = plan.items.front();
   return {first.params[5], first.params[4], 0};
@@ -117,7 +117,7 @@ std::string row(const PlanItem& item, std::size_t number, bool is_current,
 
 std::string plan_text(const Plan& plan) {
   const Decimals& decimals = plan.decimals;
-  const kit::MissionPoint home = home_of(plan);
+  const formats::MissionPoint home = home_of(plan);
   SortedJson items = SortedJson::array();
   for (const PlanItem& item : plan.items) {
     items.push_back(item_json(item, items.size() + 1));
@@ -144,7 +144,7 @@ std::string plan_text(const Plan& plan) {
 }
 
 std::string waypoints_text(const Plan& plan) {
-  const kit::MissionPoint home = home_of(plan);
+  const formats::MissionPoint home = home_of(plan);
   PlanItem first;
   first.params[4] = home.lat;
   first.params[5] = home.lon;

@@ -5,8 +5,8 @@
 
 namespace altiplan::host {
 
-using kit::AltitudeFrame;
-using kit::MissionPoint;
+using formats::AltitudeFrame;
+using formats::MissionPoint;
 
 namespace {
 

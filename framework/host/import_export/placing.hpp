@@ -21,15 +21,15 @@ class Placing {
  public:
   Placing(const Mission& mission, const ExportOptions& options, const Vec3& start);
 
-  const kit::MissionPoint& home() const { return home_; }
-  kit::MissionPoint operator()(const Vec3& p) const;
+  const formats::MissionPoint& home() const { return home_; }
+  formats::MissionPoint operator()(const Vec3& p) const;
   std::string in_words() const;
 
  private:
   std::array<double, 2> lonlat(const Vec3& p) const;
 
   const World& world_;
-  kit::AltitudeFrame frame_;
-  kit::MissionPoint home_;
+  formats::AltitudeFrame frame_;
+  formats::MissionPoint home_;
 };
 }  // namespace altiplan::host

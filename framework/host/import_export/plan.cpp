@@ -8,10 +8,10 @@
 namespace altiplan::host {
 namespace {
 
-using kit::MissionItem;
+using formats::MissionItem;
 
 int command_of(const MissionItem& item, VehicleType vehicle) {
-  using Until = kit::MissionCircle::Until;
+  using Until = formats::MissionCircle::Until;
   const bool is_vtol = vehicle == VehicleType::vtol;
   switch (item.kind) {
     case MissionItem::Kind::takeoff:
@@ -28,12 +28,12 @@ int command_of(const MissionItem& item, VehicleType vehicle) {
   return Command::kWaypoint;
 }
 
-int frame_of(kit::AltitudeFrame frame) {
-  return frame == kit::AltitudeFrame::sea ? 0 : frame == kit::AltitudeFrame::home ? 3 : 10;
+int frame_of(formats::AltitudeFrame frame) {
+  return frame == formats::AltitudeFrame::sea ? 0 : frame == formats::AltitudeFrame::home ? 3 : 10;
 }
 
 /// The radius that MAVLink gives, positive clockwise, rounded up: a smaller one would be too tight.
-double radius_of(const kit::MissionCircle& circle, int decimals) {
+double radius_of(const formats::MissionCircle& circle, int decimals) {
   const double nearest = rounded(circle.radius_m, decimals);
   const bool is_tighter = nearest < circle.radius_m - kLengthTolerance / 10;
   const double radius = is_tighter ? nearest + std::pow(10, -decimals) : nearest;
@@ -43,7 +43,7 @@ double radius_of(const kit::MissionCircle& circle, int decimals) {
 /// The first four parameters. Circles are left when heading for the next item, toward it from that
 /// place ("xtrack" 1).
 std::array<double, 4> params_of(const MissionItem& item, const MissionText& text) {
-  using Until = kit::MissionCircle::Until;
+  using Until = formats::MissionCircle::Until;
   const double unset = std::nan("");
   if (item.kind == MissionItem::Kind::takeoff && text.vehicle == VehicleType::plane) {
     return {text.climb_deg, 0, 0, unset};  // pitch
@@ -86,30 +86,30 @@ PlanItem item_of(const MissionItem& item, const MissionText& text) {
 }
 
 /// Holes of a keep-in zone become keep-out zones; those of a keep-out zone cannot be expressed.
-std::vector<PlanItem> fence_of(const std::vector<kit::Zone>& zones, const Decimals& decimals) {
+std::vector<PlanItem> fence_of(const std::vector<formats::Zone>& zones, const Decimals& decimals) {
   std::vector<PlanItem> fence;
-  const auto add = [&](int command, double param, const kit::Point2& lonlat) {
+  const auto add = [&](int command, double param, const formats::Point2& lonlat) {
     PlanItem item{command};
     item.params[0] = param;
     item.params[4] = rounded(lonlat[1], decimals.degrees);
     item.params[5] = rounded(lonlat[0], decimals.degrees);
     fence.push_back(item);
   };
-  const auto add_ring = [&](const kit::Ring& ring, bool keep_in) {
+  const auto add_ring = [&](const formats::Ring& ring, bool keep_in) {
     const int command = keep_in ? Command::kFencePolygonIn : Command::kFencePolygonOut;
-    for (const kit::Point2& corner : ring) {
+    for (const formats::Point2& corner : ring) {
       add(command, double(ring.size()), corner);
     }
   };
-  for (const kit::Zone& zone : zones) {
-    const kit::ZoneVolume& volume = zone.volumes.front();
+  for (const formats::Zone& zone : zones) {
+    const formats::ZoneVolume& volume = zone.volumes.front();
     const std::size_t first = fence.size();
     if (volume.polygon.outline.empty()) {
       add(zone.keeps_in() ? Command::kFenceCircleIn : Command::kFenceCircleOut,
           rounded(volume.radius_m, decimals.metres), volume.centre);
     } else {
       add_ring(volume.polygon.outline, zone.keeps_in());
-      for (const kit::Ring& hole : volume.polygon.holes) {
+      for (const formats::Ring& hole : volume.polygon.holes) {
         if (zone.keeps_in()) {
           add_ring(hole, false);
         }

@@ -43,7 +43,7 @@ struct Plan {
   int autopilot = 3;  ///< MAV_AUTOPILOT: ArduPilot, which supports all three altitude frames
   int vehicle = 2;    ///< MAV_TYPE: a quadrotor
   double speed_mps = 15;
-  std::optional<kit::MissionPoint> home;  ///< above sea level
+  std::optional<formats::MissionPoint> home;  ///< above sea level
   std::vector<PlanItem> items;
   std::vector<PlanItem> fence;
   std::vector<PlanItem> rally;

@@ -15,7 +15,7 @@ Polyline read_route_csv(const std::string& file, const std::string& text);
 struct CsvRow {
   double time_s = 0;
   Vec3 local{0, 0, 0};
-  kit::MissionPoint at;  ///< its degrees count in a world with a georeference
+  formats::MissionPoint at;  ///< its degrees count in a world with a georeference
 };
 
 /// The table of these columns and others; with degrees if `has_position`.

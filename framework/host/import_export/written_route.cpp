@@ -7,7 +7,7 @@
 namespace altiplan::host {
 namespace {
 
-using Until = kit::MissionCircle::Until;
+using Until = formats::MissionCircle::Until;
 
 /// ArduPilot leaves a circle at once if the next waypoint is nearer to its centre than 1.05 radii.
 constexpr double kNextBeyond = 1.1;
@@ -26,7 +26,7 @@ Vec3 centre_of(const Leg& arc) {
 /// The arc as a circle that is left along a tangent. Full circles are counted at one height only:
 /// PX4 has no such command, and a climb ends at an altitude.
 MissionPlace circle_of(const Leg& arc) {
-  kit::MissionCircle circle;
+  formats::MissionCircle circle;
   circle.radius_m = arc.radius;
   circle.sense = arc.turn > 0 ? 1 : -1;
   const double turns = std::floor((std::abs(arc.turn) + 1e-9) / (2 * kPi));
@@ -178,7 +178,7 @@ class Writing {
   }
 
   static MissionPlace loiter_of(const Loiter& loiter, const Vec3& centre, Until until) {
-    return {centre, kit::MissionCircle{until, loiter.radius, loiter.sense, 0}};
+    return {centre, formats::MissionCircle{until, loiter.radius, loiter.sense, 0}};
   }
 
   static bool is_beyond(const Vec3& next, const MissionPlace& circle) {

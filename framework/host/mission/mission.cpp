@@ -8,7 +8,7 @@
 #include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/mission/coverage.hpp"
@@ -252,7 +252,7 @@ Site site_of(const Config& config) {
   site.frame_crs = file.frame.crs;
   site.random = RandomStream(std::uint64_t(config.seed));
   if (file.start_time) {
-    site.start_time_s = kit::parse_iso_time(*file.start_time).value();  // checked on reading
+    site.start_time_s = formats::parse_iso_time(*file.start_time).value();  // checked on reading
     site.has_start_time = true;
   }
   return site;

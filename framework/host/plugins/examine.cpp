@@ -76,6 +76,25 @@ std::string mismatch(const Manifest& plugin) {
   return "";
 }
 
+/// The reason why the kit, or the formats, that this library was built with are not this host's; ""
+/// if they are, or are not used. A plugin that brings along its own would bind to this process's.
+std::string other_version(const ElfFile& elf) {
+  constexpr std::string_view kPrefix = "libaltiplan-";
+  constexpr std::string_view kEnd = ".so.";
+  for (const std::string& needed : elf.dynamic_texts(DT_NEEDED)) {
+    const std::size_t end = needed.find(kEnd);
+    if (!needed.starts_with(kPrefix) || end == std::string::npos) {
+      continue;
+    }
+    const std::string version = needed.substr(end + kEnd.size());
+    if (version != ALTIPLAN_VERSION) {
+      return "built with the " + needed.substr(kPrefix.size(), end - kPrefix.size()) +
+             " of altiplan " + version + ", this is altiplan " ALTIPLAN_VERSION ": build it again";
+    }
+  }
+  return "";
+}
+
 /// Adds the record to the library; throws ElfError if it is invalid.
 void take_record(const Manifest& record, Library& library) {
   if (!ends_with_nul(record.api_hash) || !ends_with_nul(record.compiler) ||
@@ -173,6 +192,9 @@ Library examine_library(const std::filesystem::path& file) {
       if (library.refused.empty()) {
         library.refused = mismatch(plugin);
       }
+    }
+    if (library.refused.empty()) {
+      library.refused = other_version(elf);
     }
     if (library.refused.empty()) {
       library.checksum = hexadecimal(stated_checksum(elf).sum);

@@ -61,7 +61,7 @@ PrivateCopy::PrivateCopy(const fs::path& file) {
   const auto fail = [&](const char* what, int error) {
     fail_to_use(file.string() + what + std::strerror(error), error);
   };
-  kit::Descriptor from(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  formats::Descriptor from(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (from.number() < 0) {
     fail(" cannot be opened: ", errno);
   }
@@ -73,7 +73,7 @@ PrivateCopy::PrivateCopy(const fs::path& file) {
     throw Error(file.string() + " is not a regular file");
   }
   const std::string name = file.filename().string().substr(0, 200);
-  kit::Descriptor to(::memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  formats::Descriptor to(::memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (to.number() < 0 || !copy(from.number(), to.number()) || !seal(to.number())) {
     if (errno == EFBIG) {  // RLIMIT_FSIZE applies to memory files too: fall back to the file itself
       descriptor_ = std::move(from);
@@ -93,7 +93,7 @@ fs::path PrivateCopy::path_to_load() {
   const std::lock_guard lock(mutex);
   while (!loaded.insert(path()).second) {
     const int old = descriptor_.number();
-    descriptor_ = kit::Descriptor(::fcntl(old, F_DUPFD_CLOEXEC, old + 1));
+    descriptor_ = formats::Descriptor(::fcntl(old, F_DUPFD_CLOEXEC, old + 1));
     if (descriptor_.number() < 0) {
       const int error = errno;
       fail_to_use(std::string("no descriptor for a library: ") + std::strerror(error), error);

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "altiplan/kit/formats/descriptor.hpp"
+#include "altiplan/formats/descriptor.hpp"
 
 namespace altiplan::host {
 
@@ -22,6 +22,6 @@ class PrivateCopy {
   std::filesystem::path path_to_load();
 
  private:
-  kit::Descriptor descriptor_{-1};
+  formats::Descriptor descriptor_{-1};
 };
 }  // namespace altiplan::host

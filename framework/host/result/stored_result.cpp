@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/result/stored_shape.hpp"
@@ -75,7 +75,7 @@ Json parse_unique(std::istream& in, const std::string& file) {
 }  // namespace
 
 Json read_json(const std::string& file, const std::string& expected) {
-  kit::InputFile in(file);
+  formats::InputFile in(file);
   try {
     return parse_unique(in, file);
   } catch (const Json::parse_error& error) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/program.hpp"
 #include "host/view/chromium.hpp"
 
@@ -48,7 +48,7 @@ class Encoder {
     if (program_.ended(Clock::now() + kTimeout) != 0) {
       fail();
     }
-    return kit::read_file(film().string(), kMaxBytes);
+    return formats::read_file(film().string(), kMaxBytes);
   }
 
  private:
@@ -56,7 +56,7 @@ class Encoder {
   std::filesystem::path errors() const { return folder_.path() / "errors.txt"; }
   [[noreturn]] void fail() {
     const bool runs = !program_.ended(Clock::now() + std::chrono::milliseconds(100));
-    const std::string said = kit::read_file(errors().string());
+    const std::string said = formats::read_file(errors().string());
     throw Error("'" + name_ + "' did not make the film: " +
                 (runs           ? "no progress within 60 s"
                  : said.empty() ? "it ended early"

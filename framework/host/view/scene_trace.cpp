@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/base64.hpp"
 #include "host/view/scene_parts.hpp"
 
@@ -202,11 +202,11 @@ Json trace_scene(const StoredResult& stored, SceneNotes& notes,
     return nullptr;
   }
   const std::filesystem::path file = find_trace(stored, written.get<std::string>());
-  if (const std::string why = kit::why_unreadable(file.string()); !why.empty()) {
+  if (const std::string why = formats::why_unreadable(file.string()); !why.empty()) {
     notes.warn(file.string() + ": " + why + ": the search is not shown");
     return nullptr;
   }
-  kit::InputFile in(file.string());
+  formats::InputFile in(file.string());
   std::string line;
   if (!std::getline(in, line) || !begins_a_trace(line)) {
     notes.warn(file.string() + ":1: expected a trace of altiplan run: the search is not shown");

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "altiplan/api.hpp"
 #include "altiplan/geometry.hpp"
 
 namespace altiplan {
@@ -17,7 +18,7 @@ inline constexpr std::size_t kManyEdges = 48;
 
 /// A tree of boxes over the edges of rings. A node holds consecutive edges, or whole rings, so that
 /// its ends alone determine the parity of the crossings of a ray that passes through its box from
-/// side to side.
+/// side to side. Exported for the kit and the formats; no part of the interface.
 class EdgeTree {
  public:
   struct Edge {
@@ -32,7 +33,7 @@ class EdgeTree {
 
   EdgeTree() = default;
   /// Edges are numbered from 0, ring after ring.
-  explicit EdgeTree(const std::vector<const std::vector<Point2>*>& rings);
+  ALTIPLAN_API explicit EdgeTree(const std::vector<const std::vector<Point2>*>& rings);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<Edge>& edges() const { return edges_; }
@@ -40,7 +41,7 @@ class EdgeTree {
   double extent() const { return extent_; }
 
   /// True if a ray from (x, y) to the east crosses the edges an odd number of times.
-  bool covers(double x, double y) const;
+  ALTIPLAN_API bool covers(double x, double y) const;
 
   /// Calls visit(index, edge) for the edges of the nodes with gap(rectangle) <= limit(), nearer
   /// nodes first. The gap of a box must not exceed that of its content.

@@ -183,13 +183,13 @@ auto with_edges(const Prism& prism, const EdgeTree* tree, const Work& work) {
   return tree != nullptr ? work(TreeEdges(*tree)) : work(PlainEdges(prism));
 }
 
-// The functions of altiplan/shape.hpp, with the same results.
-double signed_distance(const Indexed& solid, const Vec3& p);
-double leg_distance(const Indexed& solid, const Vec3& a, const Vec3& b);
-bool comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit);
-double leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b);
-Vec3 nearest_surface_point(const Indexed& solid, const Vec3& p);
-bool overlaps(const Indexed& solid, const Box& box, double by);
+// The functions of altiplan/shape.hpp, with the same results; exported for the kit.
+ALTIPLAN_API double signed_distance(const Indexed& solid, const Vec3& p);
+ALTIPLAN_API double leg_distance(const Indexed& solid, const Vec3& a, const Vec3& b);
+ALTIPLAN_API bool comes_within(const Indexed& solid, const Vec3& a, const Vec3& b, double limit);
+ALTIPLAN_API double leg_depth(const Indexed& solid, const Vec3& a, const Vec3& b);
+ALTIPLAN_API Vec3 nearest_surface_point(const Indexed& solid, const Vec3& p);
+ALTIPLAN_API bool overlaps(const Indexed& solid, const Box& box, double by);
 /// True if the volume shares a point with the solid.
-bool meets(const Indexed& solid, const SweptVolume& volume);
+ALTIPLAN_API bool meets(const Indexed& solid, const SweptVolume& volume);
 }  // namespace altiplan::shape_parts

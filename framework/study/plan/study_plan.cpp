@@ -5,6 +5,8 @@
 
 #include <map>
 
+#include "altiplan/formats/iso_time.hpp"
+#include "altiplan/kit/dubins/dubins.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/plugins/registry.hpp"
@@ -48,9 +50,15 @@ std::string key_of(const std::string& pair, const std::string& name, std::int64_
 
 const std::string& host_build() {
   static const std::string kBuild = [] {
-    Dl_info info{};
-    const bool is_found = dladdr(reinterpret_cast<void*>(&nearest_name), &info) != 0;
-    return build_of("/proc/self/exe") + (is_found ? " " + build_of(info.dli_fname) : std::string());
+    std::string builds = build_of("/proc/self/exe");
+    for (void* of_library :
+         {reinterpret_cast<void*>(&nearest_name), reinterpret_cast<void*>(&kit::turn_sense),
+          reinterpret_cast<void*>(&formats::iso_time)}) {
+      if (Dl_info info{}; dladdr(of_library, &info) != 0) {
+        builds += " " + build_of(info.dli_fname);
+      }
+    }
+    return builds;
   }();
   return kBuild;
 }

@@ -71,7 +71,7 @@ StudyPlan load_study(const std::filesystem::path& study, const StudySelection& s
 host::Overrides overrides_of(const StudyPlan& plan, const PlannedRun& run,
                              const std::vector<std::filesystem::path>& plugin_path);
 
-/// Build ids of the program and of the library that it shares with its plugins.
+/// Build ids of the program and of the libraries that it shares with its plugins.
 const std::string& host_build();
 
 /// PlannedRun::key of the run of that name with this configuration.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/plan/study_reading.hpp"
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/input.hpp"
 #include "host/base/words.hpp"
 #include "host/config/config_check.hpp"
@@ -227,7 +227,7 @@ StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVarian
     throw ConfigError(tree.where, "", "expected a study: a file with 'scenarios' and 'pipelines'");
   }
   plan.text = flow_text(tree);
-  plan.source = kit::read_file(plan.path.string());
+  plan.source = formats::read_file(plan.path.string());
   for (const Problem& problem : bind(plan.file, &tree).problems) {
     problems.add(problem);
   }

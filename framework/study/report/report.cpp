@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
 #include "study/figures/text.hpp"
@@ -254,7 +254,7 @@ bool is_report(const fs::path& folder) {
   if (!fs::is_regular_file(host::status_of(file))) {
     return false;
   }
-  kit::InputFile page(file);
+  formats::InputFile page(file);
   std::string start(1000, '\0');
   page.read(start.data(), std::streamsize(start.size()));
   return start.find(kMark) != std::string::npos;

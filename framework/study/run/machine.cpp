@@ -7,7 +7,7 @@
 #include <ctime>
 #include <fstream>
 
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/iso_time.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -26,7 +26,7 @@ std::string processor() {
 
 StoredSession this_session() {
   StoredSession session;
-  session.started = kit::iso_time(double(std::time(nullptr)));
+  session.started = formats::iso_time(double(std::time(nullptr)));
   session.version = ALTIPLAN_VERSION;
   utsname system{};
   uname(&system);

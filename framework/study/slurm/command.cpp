@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/program.hpp"
 
 namespace altiplan::study {
@@ -38,7 +38,7 @@ CommandResult run_command(std::vector<std::string> arguments) {
   int status = 0;
   while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), kit::read_file(out),
-          kit::read_file(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), formats::read_file(out),
+          formats::read_file(err)};
 }
 }  // namespace altiplan::study

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 
 namespace altiplan::study {
@@ -22,7 +22,7 @@ enum class Kind { absent, empty, store, database, other };
 /// The first bytes, fewer if the file is shorter.
 std::string head_of(const fs::path& file) {
   constexpr std::size_t kHeader = 100;  // of a database, by SQLite's file format
-  kit::InputFile in(file.string());
+  formats::InputFile in(file.string());
   std::string head(kHeader, '\0');
   in.read(head.data(), std::streamsize(kHeader));
   head.resize(std::size_t(in.gcount()));

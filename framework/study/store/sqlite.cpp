@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/descriptor.hpp"
+#include "altiplan/formats/descriptor.hpp"
 #include "host/base/machine_fault.hpp"
 #include "study/store/place.hpp"
 

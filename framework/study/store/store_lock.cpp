@@ -55,7 +55,7 @@ StoreLock::StoreLock(const std::filesystem::path& file)
 }
 
 void expect_no_writer(const std::filesystem::path& file) {
-  const kit::Descriptor store(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+  const formats::Descriptor store(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   const std::string writer = store.number() < 0 ? "" : writer_of(store.number());
   if (!writer.empty()) {
     throw Error("the database '" + file.string() + "' is being written by " + writer +

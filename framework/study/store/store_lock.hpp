@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "altiplan/kit/formats/descriptor.hpp"
+#include "altiplan/formats/descriptor.hpp"
 
 namespace altiplan::study {
 
@@ -16,7 +16,7 @@ class StoreLock {
   explicit StoreLock(const std::filesystem::path& file);
 
  private:
-  kit::Descriptor descriptor_;
+  formats::Descriptor descriptor_;
 };
 /// Throws Error if a process is writing the store. No store may be open in this process.
 void expect_no_writer(const std::filesystem::path& file);

@@ -5,8 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "altiplan/kit/formats/input_file.hpp"
-#include "altiplan/kit/layers/polygon.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/polygon.hpp"
 #include "buildings.hpp"
 
 namespace altiplan::city {
@@ -119,25 +119,25 @@ struct Surfaces {
   }
 };
 
-kit::Ring flat(const std::vector<Vec3>& ring) {
-  kit::Ring result;
+formats::Ring flat(const std::vector<Vec3>& ring) {
+  formats::Ring result;
   for (const Vec3& p : ring) {
     result.push_back({p.x(), p.y()});
   }
-  return kit::without_repeats(result);
+  return formats::without_repeats(result);
 }
 
-double cross(const kit::Point2& o, const kit::Point2& p, const kit::Point2& q) {
+double cross(const formats::Point2& o, const formats::Point2& p, const formats::Point2& q) {
   return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
 }
 
 /// A. M. Andrew's monotone chain.
-kit::Ring convex_hull(kit::Ring points) {
+formats::Ring convex_hull(formats::Ring points) {
   std::sort(points.begin(), points.end());
-  kit::Ring hull;
+  formats::Ring hull;
   for (const int pass : {0, 1}) {
     const std::size_t kept = hull.size();
-    for (const kit::Point2& p : points) {
+    for (const formats::Point2& p : points) {
       while (hull.size() >= kept + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0) {
         hull.pop_back();
       }
@@ -165,7 +165,7 @@ bool covered(const std::vector<Prism>& prisms, const Vec3& p) {
 std::vector<Prism> prisms_of(const Surfaces& surfaces) {
   double low = kInfinity;
   double high = -kInfinity;
-  kit::Ring plan;
+  formats::Ring plan;
   for (const Face& face : surfaces.all) {
     for (const std::vector<Vec3>& ring : face) {
       for (const Vec3& p : ring) {
@@ -180,22 +180,22 @@ std::vector<Prism> prisms_of(const Surfaces& surfaces) {
   }
   std::vector<Prism> prisms;
   for (const Face& face : surfaces.ground) {
-    kit::Polygon polygon{flat(face.at(0)), {}};
+    formats::Polygon polygon{flat(face.at(0)), {}};
     for (std::size_t n = 1; n < face.size(); ++n) {
       polygon.holes.push_back(flat(face[n]));
     }
-    if (!kit::polygon_problem(polygon).empty()) {
+    if (!formats::polygon_problem(polygon).empty()) {
       prisms.clear();
       break;
     }
     prisms.push_back({polygon.outline, polygon.holes, low, high});
   }
-  const bool complete = std::all_of(plan.begin(), plan.end(), [&](const kit::Point2& p) {
+  const bool complete = std::all_of(plan.begin(), plan.end(), [&](const formats::Point2& p) {
     return covered(prisms, {p[0], p[1], 0});
   });
   if (prisms.empty() || !complete) {
     prisms = {{convex_hull(plan), {}, low, high}};
-    if (const std::string problem = kit::polygon_problem({prisms[0].outline, {}});
+    if (const std::string problem = formats::polygon_problem({prisms[0].outline, {}});
         !problem.empty()) {
       throw Error("has no plan: " + problem);
     }
@@ -234,7 +234,7 @@ void add_object(const Model& model, const std::string& name, const Json& object,
 }  // namespace
 
 bool is_city_json(const std::string& file) {
-  const std::string text = kit::read_file(file, kAnySize);
+  const std::string text = formats::read_file(file, kAnySize);
   if (text.find("CityJSON") == text.npos) {
     return false;  // other files are parsed only by their own readers
   }
@@ -244,7 +244,7 @@ bool is_city_json(const std::string& file) {
 
 Buildings read_city_json(const std::string& file,
                          const std::optional<std::array<double, 2>>& origin_m) {
-  const Json json = parse(file, kit::read_file(file, kAnySize));
+  const Json json = parse(file, formats::read_file(file, kAnySize));
   Buildings buildings;
   std::size_t others = 0;
   std::string at = "it";

@@ -2,7 +2,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "buildings.hpp"
 
 namespace altiplan::city {
@@ -62,7 +62,7 @@ std::optional<std::array<double, 6>> box_of(std::string_view line) {
 }  // namespace
 
 Buildings read_colliders(const std::string& file, const Site& site) {
-  kit::InputFile stream(file);
+  formats::InputFile stream(file);
   std::string line;
   int number = 0;
   const auto next = [&] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "altiplan/kit/formats/geojson.hpp"
+#include "altiplan/formats/geojson.hpp"
 #include "altiplan/world.hpp"
 #include "buildings.hpp"
 
@@ -13,7 +13,7 @@ class HeightRule {
  public:
   explicit HeightRule(const Heights& heights) : heights_(heights) {}
 
-  double height(const kit::GeoFeature& feature) {
+  double height(const formats::GeoFeature& feature) {
     if (const auto metres = feature.metres(heights_.height_property)) {
       ++measured_;
       return positive(*metres, heights_.height_property);
@@ -52,11 +52,11 @@ class HeightRule {
 };
 
 /// The origin is the buildings' south-west corner.
-Frame frame_around(const kit::GeoJson& json) {
+Frame frame_around(const formats::GeoJson& json) {
   std::array<double, 2> low{180, 90};
   double north = -90;
-  for (const kit::GeoFeature& feature : json.features) {
-    for (const kit::Point2& p : feature.polygon.outline) {
+  for (const formats::GeoFeature& feature : json.features) {
+    for (const formats::Point2& p : feature.polygon.outline) {
       low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
       north = std::max(north, p[1]);
     }
@@ -64,18 +64,19 @@ Frame frame_around(const kit::GeoJson& json) {
   return Frame::geographic(low[0], low[1], (low[1] + north) / 2);
 }
 
-kit::Ring local(const kit::Ring& lonlat, const Frame& frame) {
-  kit::Ring ring;
-  for (const kit::Point2& p : lonlat) {
+formats::Ring local(const formats::Ring& lonlat, const Frame& frame) {
+  formats::Ring ring;
+  for (const formats::Point2& p : lonlat) {
     ring.push_back(frame.to_local(p[0], p[1]));
   }
   return ring;
 }
 
 /// Lowest and highest ground at the outline's corners.
-std::array<double, 2> ground_below(const kit::Ring& outline, const World& before, double base_m) {
+std::array<double, 2> ground_below(const formats::Ring& outline, const World& before,
+                                   double base_m) {
   std::array<double, 2> range{kInfinity, -kInfinity};
-  for (const kit::Point2& p : outline) {
+  for (const formats::Point2& p : outline) {
     if (const auto ground = before.ground(p[0], p[1])) {
       range = {std::min(range[0], *ground), std::max(range[1], *ground)};
     }
@@ -86,11 +87,11 @@ std::array<double, 2> ground_below(const kit::Ring& outline, const World& before
 
 Buildings read_footprints(const std::string& file, const Heights& heights, double base_m,
                           const Site& site) {
-  const kit::GeoJson json = kit::read_geojson(file);
+  const formats::GeoJson json = formats::read_geojson(file);
   if (json.features.empty()) {
     throw Error(file + ": contains no building");
   }
-  kit::expect_properties(file, json, {heights.levels_property});
+  formats::expect_properties(file, json, {heights.levels_property});
   Buildings buildings;
   Frame frame = site.frame;
   if (!frame.has_position()) {
@@ -98,10 +99,10 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
     buildings.frame = frame;
   }
   HeightRule rule(heights);
-  for (const kit::GeoFeature& feature : json.features) {
+  for (const formats::GeoFeature& feature : json.features) {
     try {
       Prism prism{local(feature.polygon.outline, frame), {}, 0, 0};
-      for (const kit::Ring& hole : feature.polygon.holes) {
+      for (const formats::Ring& hole : feature.polygon.holes) {
         prism.holes.push_back(local(hole, frame));
       }
       const auto [low, high] = ground_below(prism.outline, *site.before, base_m);

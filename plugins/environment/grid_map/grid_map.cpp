@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "altiplan/environment.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 
@@ -75,7 +75,7 @@ class Lines {
 
  private:
   std::string file_;
-  kit::InputFile stream_;
+  formats::InputFile stream_;
   int number_ = 0;
 };
 
@@ -135,7 +135,7 @@ void read_row(const std::string& line, int j, const Lines& lines, VoxelGrid& cel
 
 VoxelGrid read(const Params& params) {
   const std::string& file = params.file.text;
-  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+  if (const std::string why = formats::why_unreadable(file); !why.empty()) {
     throw ParameterError("file", file + ": " + why);
   }
   Lines lines(file);

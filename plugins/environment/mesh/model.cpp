@@ -13,7 +13,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "text_check.hpp"
 
 namespace altiplan::mesh {
@@ -31,7 +31,7 @@ constexpr std::size_t kStlTriangle = 50;
 }
 
 std::string read(const std::string& file, std::int64_t max_triangles) {
-  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+  if (const std::string why = formats::why_unreadable(file); !why.empty()) {
     refuse(file, why);
   }
   const std::uintmax_t size = fs::file_size(file);
@@ -41,7 +41,7 @@ std::string read(const std::string& file, std::int64_t max_triangles) {
                              std::to_string(kBytesOfTriangle) + " for each of max_triangles (" +
                              std::to_string(max_triangles) + ")");
   }
-  return kit::read_file(file, kBytesOfTriangle * (std::uintmax_t(max_triangles) + 1));
+  return formats::read_file(file, kBytesOfTriangle * (std::uintmax_t(max_triangles) + 1));
 }
 
 /// A binary file is recognised by its length, as it may also begin with `solid`.

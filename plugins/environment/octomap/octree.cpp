@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 
 namespace altiplan::octomap {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
 }  // namespace
 
-Octree::Octree(const std::string& file) : file_(file), bytes_(kit::read_file(file, kMaxBytes)) {
+Octree::Octree(const std::string& file) : file_(file), bytes_(formats::read_file(file, kMaxBytes)) {
   std::string id;
   int number = 0;
   const auto refuse = [&](const std::string& why) {

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "plain.hpp"
 #include "whole.hpp"
 
@@ -52,7 +52,7 @@ std::vector<fs::path> files_of(const Params& params) {
     } else if (type != fs::file_type::regular && type != fs::file_type::directory &&
                type != fs::file_type::not_found) {
       refuse(params, "'" + beside.filename().string() + "' beside it " +
-                         altiplan::kit::why_unreadable(beside.string()));
+                         altiplan::formats::why_unreadable(beside.string()));
     }
   }
   if (unknown && unknown != std::errc::permission_denied) {
@@ -78,7 +78,7 @@ std::vector<fs::path> look_up(const Params& params) {
       file.find(":/") != std::string::npos) {
     refuse(params, "expected a file of this machine, found a URL or one of GDAL's virtual files");
   }
-  if (const std::string why = altiplan::kit::why_unreadable(file); !why.empty()) {
+  if (const std::string why = altiplan::formats::why_unreadable(file); !why.empty()) {
     refuse(params, why);
   }
   return files_of(params);
@@ -297,7 +297,7 @@ Dem read_dem(const Params& params, bool may_read_a_part) try {
   dem.from_north = read_position(params, dataset, dem);
   read_meaning(params, dem);
   return dem;
-} catch (const altiplan::kit::InputError& error) {
+} catch (const altiplan::formats::InputError& error) {
   throw altiplan::ParameterError("file", error.what());
 } catch (const fs::filesystem_error& error) {
   throw altiplan::ParameterError(

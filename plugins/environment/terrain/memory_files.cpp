@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdio>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "gdal.hpp"
 
 namespace gdal {
@@ -23,7 +23,7 @@ std::string new_prefix() {
 
 MemoryFiles::MemoryFiles(const std::vector<std::filesystem::path>& files) : prefix_(new_prefix()) {
   for (const std::filesystem::path& file : files) {
-    contents_.push_back(altiplan::kit::read_file(file.string()));
+    contents_.push_back(altiplan::formats::read_file(file.string()));
   }
   for (std::size_t n = 0; n < files.size(); ++n) {  // now that their addresses are final
     names_.push_back(name_of(files[n]));

@@ -12,7 +12,7 @@ namespace gdal {
 /// read, treats an unreadable one as damaged, and its reader of ESRI ASCII grids then never ends.
 class MemoryFiles {
  public:
-  /// Throws altiplan::kit::InputError if one cannot be read. The paths are absolute.
+  /// Throws altiplan::formats::InputError if one cannot be read. The paths are absolute.
   explicit MemoryFiles(const std::vector<std::filesystem::path>& files);
   ~MemoryFiles();
   MemoryFiles(const MemoryFiles&) = delete;

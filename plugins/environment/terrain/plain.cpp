@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 
 namespace terrain {
 namespace fs = std::filesystem;
@@ -64,7 +64,7 @@ std::optional<std::array<int, 2>> corner_of(const std::string& name) {
 /// SRTM: big-endian whole metres, rows from the north, posts on the degrees themselves.
 std::optional<Dem> read_hgt(const Params& params, const fs::path& file) {
   const auto corner = corner_of(file.filename().string());
-  const std::string bytes = altiplan::kit::read_file(file.string());
+  const std::string bytes = altiplan::formats::read_file(file.string());
   int posts = 0;
   for (const int side : {1201, 3601}) {
     posts = bytes.size() == 2 * std::size_t(side) * std::size_t(side) ? side : posts;

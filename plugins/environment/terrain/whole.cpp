@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "gdal.hpp"
 
 namespace terrain {
@@ -22,7 +22,7 @@ bool is_number(const std::string& word) {
 }
 
 std::string missing_from_ascii(const std::string& file, std::int64_t posts) {
-  altiplan::kit::InputFile stream(file);
+  altiplan::formats::InputFile stream(file);
   std::int64_t found = 0;
   for (std::string word; stream >> word;) {
     if (std::isalpha(static_cast<unsigned char>(word[0])) != 0 && found == 0 && !is_number(word)) {

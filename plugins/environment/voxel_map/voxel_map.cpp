@@ -4,7 +4,7 @@
 #include <charconv>
 
 #include "altiplan/environment.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 
@@ -44,10 +44,10 @@ std::optional<Cell> three(std::string_view text) {
 
 VoxelGrid read(const Params& params) {
   const std::string file = params.file.text;
-  if (const std::string why = kit::why_unreadable(file); !why.empty()) {
+  if (const std::string why = formats::why_unreadable(file); !why.empty()) {
     throw ParameterError("file", file + ": " + why);
   }
-  kit::InputFile stream(file);
+  formats::InputFile stream(file);
   std::string line;
   std::int64_t number = 1;
   const auto refuse = [&](const std::string& expected) {

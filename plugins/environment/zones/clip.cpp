@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compiled with -O1: Boost's overlays take twice as long with -O3, and a zone is cut once.
 #include "clip.hpp"
+
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // which Boost's own headers include
 
 #include <algorithm>
 #include <boost/geometry/algorithms/convert.hpp>
@@ -14,7 +17,7 @@
 #include <cstdio>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/layers/polygon.hpp"
+#include "altiplan/formats/polygon.hpp"
 #include "altiplan/world.hpp"
 
 namespace altiplan::zones {
@@ -40,23 +43,23 @@ PlanePolygon to_boost(const Prism& prism) {
 }
 
 template <class Ring>
-kit::Ring from_boost(const Ring& ring) {
-  kit::Ring result;
+formats::Ring from_boost(const Ring& ring) {
+  formats::Ring result;
   for (const PlanePoint& p : ring) {
     result.push_back({p.x(), p.y()});
   }
-  return kit::without_repeats(result);
+  return formats::without_repeats(result);
 }
 
 /// Prisms over the polygons; false if one of them touches itself.
 bool add_prisms(const std::vector<PlanePolygon>& polygons, const Prism& like,
                 std::vector<Prism>& to) {
   for (const PlanePolygon& piece : polygons) {
-    kit::Polygon polygon{from_boost(piece.outer()), {}};
+    formats::Polygon polygon{from_boost(piece.outer()), {}};
     for (const auto& hole : piece.inners()) {
       polygon.holes.push_back(from_boost(hole));
     }
-    if (!kit::polygon_problem(polygon).empty()) {
+    if (!formats::polygon_problem(polygon).empty()) {
       return false;
     }
     to.push_back({polygon.outline, polygon.holes, like.floor, like.ceiling});
@@ -165,7 +168,7 @@ std::string Clip::note() const {
          " cut at them";
 }
 
-std::string Clip::why_none(const Frame& frame, const std::vector<kit::Point2>& corners) const {
+std::string Clip::why_none(const Frame& frame, const std::vector<formats::Point2>& corners) const {
   if (kept_ > 0 || dropped_ == 0 || !frame.has_position()) {
     return "";
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "altiplan/environment.hpp"
-#include "altiplan/kit/layers/polygon.hpp"
+#include "altiplan/formats/polygon.hpp"
 #include "altiplan/shape.hpp"
 
 namespace altiplan::zones {
@@ -31,7 +31,7 @@ class Clip {
   std::string note() const;
   /// Of zones none of which lies within the bounds: what their corners (longitude, latitude) cover,
   /// and whether they would lie within if latitude stood first in their file. "" if one does.
-  std::string why_none(const Frame& frame, const std::vector<kit::Point2>& corners) const;
+  std::string why_none(const Frame& frame, const std::vector<formats::Point2>& corners) const;
 
  private:
   Box bounds_;

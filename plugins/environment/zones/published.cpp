@@ -11,11 +11,11 @@
 namespace altiplan::zones {
 namespace {
 
-using kit::Point2;
-using kit::Ring;
-using kit::Zone;
-using kit::ZoneLimit;
-using kit::ZoneVolume;
+using formats::Point2;
+using formats::Ring;
+using formats::Zone;
+using formats::ZoneLimit;
+using formats::ZoneVolume;
 using Datum = ZoneLimit::Datum;
 using Use = PublishedRules::Use;
 
@@ -105,7 +105,7 @@ class Converter {
       std::snprintf(text, sizeof text,
                     "%zu limits are flight levels: altitudes in the standard atmosphere at QNH "
                     "%.2f hPa (FL100 = %.0f m)",
-                    levels_, rules_.qnh_hpa, kit::standard_to_sea(3048, rules_.qnh_hpa));
+                    levels_, rules_.qnh_hpa, formats::standard_to_sea(3048, rules_.qnh_hpa));
       notes.emplace_back(text);
     }
     if (without_ground_ > 0) {
@@ -136,7 +136,7 @@ class Converter {
       above = limit.metres;
     } else if (limit.datum == Datum::standard) {
       ++levels_;
-      sea = kit::standard_to_sea(limit.metres, rules_.qnh_hpa);
+      sea = formats::standard_to_sea(limit.metres, rules_.qnh_hpa);
     } else if (limit.datum == Datum::sea) {
       sea = limit.metres;
     }
@@ -195,9 +195,9 @@ bool has_times(const Zone& zone) {
 
 Use use_of(const Zone& zone, const PublishedRules& rules) {
   switch (zone.restriction) {
-    case kit::Restriction::ask:
+    case formats::Restriction::ask:
       return rules.ask;
-    case kit::Restriction::inform:
+    case formats::Restriction::inform:
       return rules.inform;
     default:
       return Use::keep_out;
@@ -205,8 +205,8 @@ Use use_of(const Zone& zone, const PublishedRules& rules) {
 }
 
 /// "keep out: 2 P, 6 R; ask (closed): 3 CTR; inform (skipped): 4 G"
-std::string mapping(const kit::Airspace& airspace, const PublishedRules& rules) {
-  std::map<kit::Restriction, std::map<std::string, std::size_t>> counts;
+std::string mapping(const formats::Airspace& airspace, const PublishedRules& rules) {
+  std::map<formats::Restriction, std::map<std::string, std::size_t>> counts;
   for (const Zone& zone : airspace.zones) {
     ++counts[zone.restriction][zone.type.empty() ? "without a class" : zone.type];
   }
@@ -216,9 +216,9 @@ std::string mapping(const kit::Airspace& airspace, const PublishedRules& rules) 
   std::string text;
   for (const auto& [restriction, types] : counts) {
     text += text.empty() ? "" : "; ";
-    text += restriction == kit::Restriction::keep_out ? "keep out (closed): "
-            : restriction == kit::Restriction::ask    ? heading("ask", rules.ask)
-                                                      : heading("inform", rules.inform);
+    text += restriction == formats::Restriction::keep_out ? "keep out (closed): "
+            : restriction == formats::Restriction::ask    ? heading("ask", rules.ask)
+                                                          : heading("inform", rules.inform);
     const char* comma = "";
     for (const auto& [type, count] : types) {
       text += comma + std::to_string(count) + " " + type;
@@ -240,7 +240,7 @@ void PublishedRules::describe(Fields& f) {
       .doc("air pressure at sea level, for limits that are flight levels");
 }
 
-Published published_zones(const kit::Airspace& airspace, const PublishedRules& rules,
+Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,
                           const Site& site, double horizon_s, Clip* clip) {
   Published published;
   Converter converter(rules, site, clip);
@@ -258,7 +258,7 @@ Published published_zones(const kit::Airspace& airspace, const PublishedRules& r
     }
     converter.add(zone);
   }
-  published.notes = {kit::format_name(airspace.format) + ": " +
+  published.notes = {formats::format_name(airspace.format) + ": " +
                          std::to_string(airspace.zones.size()) + " zones of " +
                          std::to_string(volumes) + " volumes read",
                      mapping(airspace, rules)};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "altiplan/environment.hpp"
-#include "altiplan/kit/formats/airspace.hpp"
+#include "altiplan/formats/airspace.hpp"
 #include "altiplan/params.hpp"
 #include "clip.hpp"
 #include "ground_zones.hpp"
@@ -34,6 +34,6 @@ struct Published {
 };
 
 /// The zones that are closed at some time of the flight. The site has a frame with a position.
-Published published_zones(const kit::Airspace& airspace, const PublishedRules& rules,
+Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,
                           const Site& site, double horizon_s, Clip* clip);
 }  // namespace altiplan::zones

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
 #include "altiplan/world.hpp"
 #include "support/files.hpp"
 #include "support/support.hpp"
@@ -294,7 +294,7 @@ TEST_F(Published, ZonesCountWhileTheyAreActive) {
       "{file: " + (folder / "ed269_u-space_che-1.json").string() + ", ask: skip}";
   Site at = site(false);
   const auto blocked = [&](const char* time) {
-    at.start_time_s = kit::parse_iso_time(time).value_or(0);
+    at.start_time_s = formats::parse_iso_time(time).value_or(0);
     at.has_start_time = *time != 0;
     const auto layer = make_environment("zones", yaml, at);
     const auto [x, y] = kFrame.to_local(6.913, 46.431);

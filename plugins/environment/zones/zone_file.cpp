@@ -6,29 +6,29 @@
 #include <tuple>
 
 #include "altiplan/error.hpp"
-#include "altiplan/kit/formats/geojson.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
-#include "altiplan/kit/formats/iso_time.hpp"
+#include "altiplan/formats/geojson.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/iso_time.hpp"
 #include "published.hpp"
 
 namespace altiplan::zones {
 namespace {
 
-using kit::GeoFeature;
-using kit::GeoJson;
-using kit::Zone;
-using Datum = kit::ZoneLimit::Datum;
+using formats::GeoFeature;
+using formats::GeoJson;
+using formats::Zone;
+using Datum = formats::ZoneLimit::Datum;
 
 void expect_limits(const Zone& zone) {
-  const kit::ZoneLimit& lower = zone.volumes.front().lower;
-  const kit::ZoneLimit& upper = zone.volumes.front().upper;
+  const formats::ZoneLimit& lower = zone.volumes.front().lower;
+  const formats::ZoneLimit& upper = zone.volumes.front().upper;
   if (lower.datum == Datum::sea && upper.datum == Datum::sea && !(lower.metres < upper.metres)) {
     throw Error("the floor must be below the ceiling");
   }
 }
 
 double seconds(const std::string& time) {
-  const std::optional<double> result = kit::parse_iso_time(time);
+  const std::optional<double> result = formats::parse_iso_time(time);
   if (!result) {
     throw Error("expected a time such as 2026-06-17T05:00:00Z (ISO 8601), found '" + time + "'");
   }
@@ -53,15 +53,15 @@ std::string counted(const std::map<std::string, std::size_t>& types) {
 
 /// A limit of the property, else that of our own file, else that of the feature's type.
 void set_limit(const std::optional<double>& property, const std::optional<double>& of_type,
-               kit::ZoneLimit& limit) {
+               formats::ZoneLimit& limit) {
   if (property || limit.datum == Datum::none) {
-    limit = kit::ZoneLimit::sea(property ? property : of_type);
+    limit = formats::ZoneLimit::sea(property ? property : of_type);
   }
 }
 
 Zone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRule* rule) {
-  Zone zone = kit::zone_of(feature);
-  if (zone.restriction == kit::Restriction::unspecified) {
+  Zone zone = formats::zone_of(feature);
+  if (zone.restriction == formats::Restriction::unspecified) {
     zone.restriction = rules.kind;
   }
   const TypeRule none;
@@ -79,7 +79,7 @@ void expect_limits_read(const std::string& file, const GeoJson& json, const File
                                             {"ceiling_m", "ceiling_property", &rules.ceiling}}) {
     for (const GeoFeature& feature : json.features) {
       if (property->empty() && feature.properties.contains(name) &&
-          kit::role_of(feature) == kit::Restriction::unspecified) {
+          formats::role_of(feature) == formats::Restriction::unspecified) {
         throw Error(file + ": '" + feature.id + "': has the property '" + name +
                     "', which is not read: expected " + key + ": " + name + " in the scenario");
       }
@@ -88,10 +88,10 @@ void expect_limits_read(const std::string& file, const GeoJson& json, const File
 }
 
 FileZones read_features(const std::string& file, const FileRules& rules) {
-  const GeoJson json = kit::read_geojson(file);
+  const GeoJson json = formats::read_geojson(file);
   if (!json.features.empty()) {
-    kit::expect_properties(file, json,
-                           {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
+    formats::expect_properties(file, json,
+                               {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
   }
   expect_limits_read(file, json, rules);
   if (json.features.empty() && !json.flat.empty()) {
@@ -129,15 +129,15 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
       throw Error(file + ": has no property '" + name + "': properties are GeoJSON's");
     }
   }
-  const kit::MissionFile mission = kit::read_mission(file);
+  const formats::MissionFile mission = formats::read_mission(file);
   if (mission.zones.empty()) {
     throw Error(file + ": contains no zone" +
-                (mission.flat.empty() ? "" : ": no area in " + kit::names_text(mission.flat)));
+                (mission.flat.empty() ? "" : ": no area in " + formats::names_text(mission.flat)));
   }
   FileZones result;
   result.zones = mission.zones;
   for (Zone& zone : result.zones) {
-    if (zone.restriction == kit::Restriction::unspecified) {
+    if (zone.restriction == formats::Restriction::unspecified) {
       zone.restriction = rules.kind;
     }
     expect_limits(zone);
@@ -145,26 +145,27 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
   result.notes.push_back(
       std::to_string(mission.zones.size()) + " zones read, " +
       std::to_string(mission.items.size()) + " waypoints of a route ignored" +
-      (mission.flat.empty() ? "" : "; skipped, without an area: " + kit::names_text(mission.flat)));
+      (mission.flat.empty() ? ""
+                            : "; skipped, without an area: " + formats::names_text(mission.flat)));
   result.notes.insert(result.notes.end(), mission.notes.begin(), mission.notes.end());
   return result;
 }
 /// None for GeoJSON whose properties the scenario names, and for other kinds of files.
-std::optional<kit::Airspace> read_published(const std::string& file, const FileRules& rules) {
-  const std::string text = kit::read_file(file);
+std::optional<formats::Airspace> read_published(const std::string& file, const FileRules& rules) {
+  const std::string text = formats::read_file(file);
   const bool is_json = text.find_first_of("{<") == text.find_first_not_of("\xEF\xBB\xBF \t\r\n") &&
                        text.find('{') < text.find('<');
   if (is_json && rules.name_properties()) {
     return std::nullopt;
   }
-  std::optional<kit::Airspace> airspace = kit::read_airspace(file, text);
+  std::optional<formats::Airspace> airspace = formats::read_airspace(file, text);
   if (airspace && rules.name_properties()) {
     throw Error(file + ": has no property '" +
                 (rules.floor + rules.ceiling + rules.from + rules.until + rules.type) +
                 "': properties are GeoJSON's");
   }
-  if (airspace && rules.kind == kit::Restriction::keep_in) {
-    throw Error(file + ": is published airspace (" + kit::format_name(airspace->format) +
+  if (airspace && rules.kind == formats::Restriction::keep_in) {
+    throw Error(file + ": is published airspace (" + formats::format_name(airspace->format) +
                 "), expected file_kind: keep_out");
   }
   if (airspace && airspace->zones.empty()) {
@@ -187,7 +188,7 @@ void TypeRule::describe(Fields& f) {
 
 void FileRules::describe(Fields& f) {
   f("file_kind", kind,
-    {{"keep_out", kit::Restriction::keep_out}, {"keep_in", kit::Restriction::keep_in}})
+    {{"keep_out", formats::Restriction::keep_out}, {"keep_in", formats::Restriction::keep_in}})
       .doc("kind of the zones of GeoJSON and KML; each zone of a fence file declares its own");
   f("floor_property", floor).doc("GeoJSON's property with the floor, m above sea level");
   f("ceiling_property", ceiling).doc("GeoJSON's property with the ceiling, m above sea level");
@@ -198,11 +199,11 @@ void FileRules::describe(Fields& f) {
   f.check(types.empty() || !type.empty(), "types needs type_property");
 }
 
-std::vector<kit::ZonePeriod> time_window(const std::string& from, const std::string& until) {
+std::vector<formats::ZonePeriod> time_window(const std::string& from, const std::string& until) {
   if (from.empty() && until.empty()) {
     return {};
   }
-  const kit::ZonePeriod period{
+  const formats::ZonePeriod period{
       from.empty() ? -kInfinity : seconds(from), until.empty() ? kInfinity : seconds(until), {}};
   if (period.from > period.until) {
     throw Error("the time window ends at " + until + ", before it starts at " + from);
@@ -216,13 +217,13 @@ FileZones read_zone_file(const std::string& file, const FileRules& rules) {
     result.airspace = std::move(airspace);
     return result;
   }
-  return kit::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
+  return formats::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
 }
 
 Frame frame_of(const FileZones& file) {
-  kit::Point2 low{180, 90};
+  formats::Point2 low{180, 90};
   double north = -90;
-  for (const kit::Point2& p : corners_of(file)) {
+  for (const formats::Point2& p : corners_of(file)) {
     low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
     north = std::max(north, p[1]);
   }

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/formats/airspace.hpp"
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/frame.hpp"
-#include "altiplan/kit/formats/airspace.hpp"
-#include "altiplan/kit/formats/mission_file.hpp"
 #include "altiplan/params.hpp"
 
 namespace altiplan::zones {
@@ -24,7 +24,7 @@ struct TypeRule {
 
 /// Rules that convert a file's features to zones; property names are "" if the file has none.
 struct FileRules {
-  kit::Restriction kind = kit::Restriction::keep_out;
+  formats::Restriction kind = formats::Restriction::keep_out;
   std::string floor;
   std::string ceiling;
   std::string from;
@@ -38,21 +38,21 @@ struct FileRules {
 
 /// Zones of a file, of one volume each.
 struct FileZones {
-  std::optional<kit::Airspace> airspace;  ///< of a file of that kind, which has no other zones
-  std::vector<kit::Zone> zones;           ///< to keep out of or in
+  std::optional<formats::Airspace> airspace;  ///< of a file of that kind, which has no other zones
+  std::vector<formats::Zone> zones;           ///< to keep out of or in
   std::vector<std::string> notes;
 };
 
 /// A time window's ends, "" where it is open; no period where it is open at both. Throws Error for
 /// other texts than times.
-std::vector<kit::ZonePeriod> time_window(const std::string& from, const std::string& until);
+std::vector<formats::ZonePeriod> time_window(const std::string& from, const std::string& until);
 
 /// Reads published airspace, GeoJSON, KML, or the fence from a ground station's file. Throws Error
 /// naming the file.
 FileZones read_zone_file(const std::string& file, const FileRules& rules);
 
-inline std::vector<kit::Point2> corners_of(const FileZones& file) {
-  return kit::corners_of(file.airspace ? file.airspace->zones : file.zones);
+inline std::vector<formats::Point2> corners_of(const FileZones& file) {
+  return formats::corners_of(file.airspace ? file.airspace->zones : file.zones);
 }
 
 /// A frame for a world that has none: its origin is the south-west corner of the zones.

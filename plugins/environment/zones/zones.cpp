@@ -14,9 +14,9 @@
 namespace altiplan::zones {
 namespace {
 
-using kit::Point2;
-using kit::Polygon;
-using kit::Ring;
+using formats::Point2;
+using formats::Polygon;
+using formats::Ring;
 using Rings = std::vector<Ring>;
 
 struct CylinderParams {
@@ -52,7 +52,7 @@ struct PolygonParams {
 /// A zone of the scenario: its keys, in which positions may be local or relative to a layer.
 struct ZoneParams {
   std::string id;
-  kit::Restriction kind = kit::Restriction::keep_out;
+  formats::Restriction kind = formats::Restriction::keep_out;
   std::optional<CylinderParams> cylinder;
   std::optional<PolygonParams> polygon;
   std::optional<double> floor_m;
@@ -63,7 +63,7 @@ struct ZoneParams {
   void describe(Fields& f) {
     f("id", id).doc("name for messages");
     f("kind", kind,
-      {{"keep_out", kit::Restriction::keep_out}, {"keep_in", kit::Restriction::keep_in}})
+      {{"keep_out", formats::Restriction::keep_out}, {"keep_in", formats::Restriction::keep_in}})
         .doc("forbids the inside (keep_out), or everything outside all keep_in zones (keep_in)");
     f("cylinder", cylinder).doc("an upright cylinder");
     f("polygon", polygon).doc("an upright prism");
@@ -162,14 +162,14 @@ class Zones final : public Environment {
           {shape, keeps_in ? Drawn::Role::keep_in : Drawn::Role::keep_out, name});
     }
 
-    bool is_active(const std::vector<kit::ZonePeriod>& periods) {
+    bool is_active(const std::vector<formats::ZonePeriod>& periods) {
       if (periods.empty()) {
         return true;
       }
       if (!site.has_start_time) {
         throw Error("a zone with a time window needs the scenario's start_time");
       }
-      const kit::ZonePeriod& window = periods.front();
+      const formats::ZonePeriod& window = periods.front();
       const bool active =
           window.from <= site.start_time_s + horizon_s && window.until >= site.start_time_s;
       inactive += !active;
@@ -207,7 +207,7 @@ class Zones final : public Environment {
       if (file.airspace) {
         add_published(*file.airspace, params, clip ? &*clip : nullptr);
       }
-      for (const kit::Zone& zone : file.zones) {
+      for (const formats::Zone& zone : file.zones) {
         try {
           if (!is_active(zone.periods)) {
             continue;
@@ -228,7 +228,7 @@ class Zones final : public Environment {
       }
     }
 
-    void add_published(const kit::Airspace& airspace, const Params& params, Clip* clip) {
+    void add_published(const formats::Airspace& airspace, const Params& params, Clip* clip) {
       Published published =
           published_zones(airspace, params.published, site, params.horizon_s, clip);
       notes.insert(notes.end(), published.notes.begin(), published.notes.end());
@@ -244,9 +244,9 @@ class Zones final : public Environment {
     }
 
     /// Of a volume whose limits are above sea level.
-    Shape shape_of(const kit::ZoneVolume& volume) const {
-      const auto height = [](const kit::ZoneLimit& limit, double none) {
-        return limit.datum == kit::ZoneLimit::Datum::none ? none : limit.metres;
+    Shape shape_of(const formats::ZoneVolume& volume) const {
+      const auto height = [](const formats::ZoneLimit& limit, double none) {
+        return limit.datum == formats::ZoneLimit::Datum::none ? none : limit.metres;
       };
       const double floor = height(volume.lower, -kInfinity);
       const double ceiling = height(volume.upper, kInfinity);
@@ -269,13 +269,13 @@ class Zones final : public Environment {
         shape = Cylinder{at.x(), at.y(), zone.cylinder->radius_m, floor, ceiling};
       } else {
         const bool is_local = !zone.polygon->outline_m.empty();
-        Polygon polygon{
-            kit::without_repeats(is_local ? zone.polygon->outline_m : zone.polygon->outline_lonlat),
-            is_local ? zone.polygon->holes_m : zone.polygon->holes_lonlat};
+        Polygon polygon{formats::without_repeats(is_local ? zone.polygon->outline_m
+                                                          : zone.polygon->outline_lonlat),
+                        is_local ? zone.polygon->holes_m : zone.polygon->holes_lonlat};
         for (Ring& hole : polygon.holes) {
-          hole = kit::without_repeats(hole);
+          hole = formats::without_repeats(hole);
         }
-        if (const std::string problem = kit::polygon_problem(polygon); !problem.empty()) {
+        if (const std::string problem = formats::polygon_problem(polygon); !problem.empty()) {
           throw Error(problem);
         }
         shape = is_local ? Shape(Prism{polygon.outline, polygon.holes, floor, ceiling})
@@ -284,7 +284,7 @@ class Zones final : public Environment {
       if (!is_active(time_window(zone.from, zone.until))) {
         return;
       }
-      const bool keeps_in = zone.kind == kit::Restriction::keep_in;
+      const bool keeps_in = zone.kind == formats::Restriction::keep_in;
       add(keeps_in, shape, zone.id);
       if (zone.cylinder && !keeps_in) {
         const auto& cylinder = std::get<Cylinder>(shape);

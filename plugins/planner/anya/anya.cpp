@@ -17,6 +17,7 @@
 #include <sstream>
 #include <string>
 
+#include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/lattice/move_rules.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
@@ -26,24 +27,16 @@ namespace {
 
 using namespace altiplan;
 
-struct Params {
-  Vec3 cell_m{50, 50, 10};
+struct Params : kit::LatticeParams {
   anya::Corner corner = anya::Corner::any;
-  int max_memory_mb = 4096;
 
   void describe(Fields& f) {
-    f("cell_m", cell_m)
-        .unit("m")
-        .at_least(0.001)
-        .doc("cell edge length on each axis; a layer with its own cells overrides it");
+    describe_cell(f);
     f("corner", corner, {{"any", anya::Corner::any}, {"one_free", anya::Corner::one_free}})
         .doc(
             "a route may pass between two blocked cells that meet at a corner (any), or one of the "
             "two cells beside it must be free there (one_free)");
-    f("max_memory_mb", max_memory_mb)
-        .unit("MB")
-        .at_least(1)
-        .doc("memory limit of the lattice; a larger one is refused before allocation");
+    describe_memory(f);
   }
 };
 
@@ -80,17 +73,17 @@ class Anya final : public Planner {
   }
 
   PlanResult on_level(const Request& request) const {
-    const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;
+    const std::size_t max_bytes = params_.max_bytes();
     const std::size_t bytes_per_cell = sizeof(std::uint32_t) + 1;
     const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
-                               {most, bytes_per_cell});
+                               {max_bytes, bytes_per_cell});
     if (auto over = kit::beyond_budget(lattice, bytes_per_cell, request.budget)) {
       return *std::move(over);
     }
     const std::shared_ptr<const VoxelGrid> grid = kit::occupancy(request, lattice);
     const auto memory = memory_.take();
     return anya::Plan(request, lattice, *grid, params_.corner,
-                      std::min(most, request.budget.max_memory_bytes), *memory)
+                      std::min(max_bytes, request.budget.max_memory_bytes), *memory)
         .result();
   }
 

@@ -9,9 +9,9 @@
 #include "altiplan/check.hpp"
 #include "altiplan/kit/lattice/bucket_queue.hpp"
 #include "altiplan/kit/lattice/lattice_search.hpp"
-#include "altiplan/kit/lattice/natural_steps.hpp"
 #include "altiplan/kit/lattice/tiles.hpp"
 #include "goal_flood.hpp"
+#include "natural_steps.hpp"
 
 namespace altiplan::astar {
 
@@ -28,7 +28,7 @@ struct StepMemory {
 /// which takes a quarter of the cells that the search takes, proves early that a goal is shut in.
 ///
 /// Where all steps around a cell are free and turns are not limited, successors that the cell
-/// before reaches as cheaply on another path are pruned (kit/natural_steps.hpp).
+/// before reaches as cheaply on another path are pruned (natural_steps.hpp).
 class StepSearch {
  public:
   /// `costs` are those of the lattice. All arguments must outlive the search.
@@ -367,7 +367,7 @@ class StepSearch {
   const kit::TileIndex& tiles_;
   const kit::StepCosts& costs_;
   kit::MoveRules rules_;
-  kit::NaturalSteps natural_;
+  NaturalSteps natural_;
   kit::TiledArray<std::uint32_t>& complement_;
   kit::TiledArray<std::uint8_t>& in_;
   kit::BucketQueue& open_;

@@ -14,6 +14,7 @@
 // Symbols: g length so far, h octile distance to the goal, f = g + h.
 #include <memory>
 
+#include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/lattice/move_rules.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
@@ -25,17 +26,12 @@ using namespace altiplan;
 using kit::CornerRule;
 using kit::StepCosts;
 
-struct Params {
-  Vec3 cell_m{50, 50, 10};
+struct Params : kit::LatticeParams {
   CornerRule corner = CornerRule::any;
   StepCosts::Scale costs = StepCosts::Scale::fine;
-  int max_memory_mb = 4096;
 
   void describe(Fields& f) {
-    f("cell_m", cell_m)
-        .unit("m")
-        .at_least(0.001)
-        .doc("cell edge length on each axis; a layer with its own cells overrides it");
+    describe_cell(f);
     f("corner", corner, {{"any", CornerRule::any}, {"free_box", CornerRule::free_box}})
         .doc(
             "a diagonal step requires its two cells to be free (any), or also the two beside it "
@@ -45,10 +41,7 @@ struct Params {
             "costs of straight and diagonal steps: as fine as 28 bits allow for the length of a "
             "path, or, on square cells, 70 to 99, which makes routes at most 1e-4 longer than "
             "the shortest");
-    f("max_memory_mb", max_memory_mb)
-        .unit("MB")
-        .at_least(1)
-        .doc("memory limit of the lattice; a larger one is refused before allocation");
+    describe_memory(f);
   }
 };
 
@@ -68,14 +61,14 @@ class Jps final : public Planner {
     if (const std::string rule = kit::beyond_cells(request); !rule.empty()) {
       return refused("cannot satisfy " + rule);
     }
-    const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;
+    const std::size_t max_bytes = params_.max_bytes();
     const std::size_t bytes_per_cell = sizeof(std::uint32_t) + 1;
     const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all,
-                               {most, bytes_per_cell});
+                               {max_bytes, bytes_per_cell});
     if (auto over = kit::beyond_budget(lattice, bytes_per_cell, request.budget)) {
       return *std::move(over);
     }
-    const std::size_t allowed = std::min(most, request.budget.max_memory_bytes);
+    const std::size_t allowed = std::min(max_bytes, request.budget.max_memory_bytes);
     if (const int levels = lattice.spec().counts[2]; levels > 1) {
       return refused("searches one level of cells, this lattice has " + std::to_string(levels) +
                      " (the request does not ask for level flight)");

@@ -85,11 +85,11 @@ class Search {
 
   /// Cost of the path to the goal if no cell were blocked.
   std::uint32_t heuristic(int x, int y) const {
-    std::uint32_t least = kNone;
+    std::uint32_t minimum = kNone;
     for (const GoalCell& goal : goals_) {
-      least = std::min(least, level_costs_.apart(goal.x - x, goal.y - y) + goal.cost);
+      minimum = std::min(minimum, level_costs_.apart(goal.x - x, goal.y - y) + goal.cost);
     }
-    return least == kNone ? 0 : least;
+    return minimum == kNone ? 0 : minimum;
   }
 
   void reach(int x, int y, std::uint32_t g, int in) {
@@ -261,12 +261,12 @@ class Search {
 
   /// Maximum number of steps to a cell that stay on the level.
   int steps_back(const Cell& c, const Cell& step) const {
-    int most = std::numeric_limits<int>::max();
+    int maximum = std::numeric_limits<int>::max();
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const int behind = step[axis] > 0 ? c[axis] : lattice_.spec().counts[axis] - 1 - c[axis];
-      most = step[axis] == 0 ? most : std::min(most, behind);
+      maximum = step[axis] == 0 ? maximum : std::min(maximum, behind);
     }
-    return most;
+    return maximum;
   }
 
   /// Corners from the start to a cell.

@@ -63,8 +63,8 @@ TEST_P(Ompl, GivesTheSameAnswerAgain) {
 
 TEST_P(Ompl, KeepsTheBudget) {
   Request request = through_a_window();
-  for (const std::uint64_t most : {0, 1, 40, 400}) {
-    request.budget.max_iterations = most;
+  for (const std::uint64_t maximum : {0, 1, 40, 400}) {
+    request.budget.max_iterations = maximum;
     const PlanResult result = make_planner("ompl", with(GetParam(), 20'000))->plan(request);
     ASSERT_FALSE(result.counters.empty());
     EXPECT_LE(std::uint64_t(result.counters[0].value), most);

@@ -255,9 +255,9 @@ class Growth {
 
   /// Checks the constraints that single legs cannot decide.
   bool keeps_route_rules(const Polyline& route) const {
-    const double most = request_.limits.max_route_length;
-    return (most == kInfinity && request_.constraints.empty()) ||
-           (length(route) <= most + kLengthTolerance && check(route, request_).ok());
+    const double maximum = request_.limits.max_route_length;
+    return (maximum == kInfinity && request_.constraints.empty()) ||
+           (length(route) <= maximum + kLengthTolerance && check(route, request_).ok());
   }
 
   PlanResult with_route() const {

@@ -194,14 +194,14 @@ class TreeSession final : public Session {
   std::size_t next_of_route() const {
     const Vec3& p = request_.start.position;
     std::size_t next = 1;
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (std::size_t i = 1; i < route_.size(); ++i) {
       const Vec3& a = tree_.point(route_[i - 1]);
       const Vec3 leg = tree_.point(route_[i]) - a;
       const double along = std::clamp((p - a).dot(leg) / leg.squaredNorm(), 0.0, 1.0);
       const double distance = (a + along * leg - p).squaredNorm();
-      if (distance <= least) {
-        least = distance;
+      if (distance <= minimum) {
+        minimum = distance;
         next = i;
       }
     }

@@ -83,8 +83,8 @@ class Tree {
   void set_grown_to_goal(Node node) { marks_[std::size_t(node)].grown_to_goal = true; }
 
   /// Counts a failed extension. A node that has `most` of them rests until none is left to grow.
-  void count_failure(Node node, int most) {
-    if (++marks_[std::size_t(node)].failures < most) {
+  void count_failure(Node node, int maximum) {
+    if (++marks_[std::size_t(node)].failures < maximum) {
       return;
     }
     put(node, Place::resting);

@@ -199,8 +199,8 @@ class TwoTrees {
       return false;
     }
     Route route = edges_.route(from, to);
-    const double most = request_.limits.max_route_length;
-    if (most < kInfinity && length(route) > most + kLengthTolerance) {
+    const double maximum = request_.limits.max_route_length;
+    if (maximum < kInfinity && length(route) > maximum + kLengthTolerance) {
       return false;
     }
     route_ = std::move(route);
@@ -213,9 +213,9 @@ class TwoTrees {
       return true;
     }
     const double tolerance = side == kStart ? request_.goal.tolerance_m : 0;
-    const double least = tree(side).metres[std::size_t(parent)] + edges_.metres(side, parent, q) +
-                         edges_.metres_left(side, q) - tolerance;
-    const bool is_short_enough = edges_.is_short_enough(least);
+    const double minimum = tree(side).metres[std::size_t(parent)] + edges_.metres(side, parent, q) +
+                           edges_.metres_left(side, q) - tolerance;
+    const bool is_short_enough = edges_.is_short_enough(minimum);
     too_long_ += !is_short_enough;
     return is_short_enough;
   }

@@ -9,6 +9,7 @@
 // Deviations: the line's own points are kept off the centres of cells; the last plane's point must
 //   lead on to the goal; points on a straight stretch are removed at the end.
 // Symbols: p_i the route's point on plane i, p_0 the start.
+#include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/scratch.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
@@ -20,26 +21,18 @@ using namespace altiplan;
 
 enum class Axis { x, y, z, automatic };
 
-struct Params {
-  Vec3 cell_m{50, 50, 10};
+struct Params : kit::LatticeParams {
   Axis axis = Axis::x;
   int plane_cells = 1;
-  int max_memory_mb = 4096;
 
   void describe(Fields& f) {
-    f("cell_m", cell_m)
-        .unit("m")
-        .at_least(0.001)
-        .doc("cell edge length on each axis; a layer with its own cells overrides it");
+    describe_cell(f);
     f("axis", axis, {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}, {"auto", Axis::automatic}})
         .doc(
             "axis perpendicular to the planes; auto: the axis on which start and goal lie "
             "farthest apart");
     f("plane_cells", plane_cells).range(1, 1000000).doc("spacing of the planes in cells");
-    f("max_memory_mb", max_memory_mb)
-        .unit("MB")
-        .at_least(1)
-        .doc("memory limit of the lattice; a larger one is refused before allocation");
+    describe_memory(f);
   }
 };
 
@@ -49,10 +42,10 @@ class SpatialSlicing final : public Planner {
 
  private:
   PlanResult do_plan(const Request& request) const override {
-    const std::size_t most = std::size_t(params_.max_memory_mb) * 1024 * 1024;
+    const std::size_t max_bytes = params_.max_bytes();
     Budget allowed = request.budget;
-    allowed.max_memory_bytes = std::min(most, allowed.max_memory_bytes);
-    const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all, {most, 1});
+    allowed.max_memory_bytes = std::min(max_bytes, allowed.max_memory_bytes);
+    const kit::Lattice lattice(request, params_.cell_m, kit::Neighbourhood::all, {max_bytes, 1});
     const int axis = axis_of(request);
     // The occupancy, at most one byte per cell, and the candidates of one plane.
     const std::size_t planes = std::size_t(lattice.spec().counts[std::size_t(axis)]);

@@ -91,17 +91,17 @@ Polyline full_scan(const Request& request, int axis, int apart) {
              (i + 1 < planes.size() || free(onward(before, route.back()), p, goal));
     };
     std::optional<Vec3> best;
-    double least = kInfinity;
+    double minimum = kInfinity;
     if (const Vec3 p = on_line(i); reached(p)) {
       best = p;
-      least = 0;
+      minimum = 0;
     }
     for (std::uint32_t index = 0; index < lattice.size(); ++index) {
       const Vec3 p = lattice.position(lattice.cell(index));
       const double cost = (p - route.back()).norm() + (on_line(i + 1) - p).norm();
-      if (std::abs(p[axis] - planes[i]) < 0.1 && cost < least &&
+      if (std::abs(p[axis] - planes[i]) < 0.1 && cost < minimum &&
           !grid->blocked(lattice.cell(index)) && reached(p)) {
-        least = cost;
+        minimum = cost;
         best = p;
       }
     }
@@ -117,11 +117,11 @@ Polyline full_scan(const Request& request, int axis, int apart) {
 }
 
 double distance_to(const Vec3& p, const Polyline& route) {
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
-    least = std::min(least, point_leg_distance(p, route[i], route[i + 1]));
+    minimum = std::min(minimum, point_leg_distance(p, route[i], route[i + 1]));
   }
-  return least;
+  return minimum;
 }
 
 TEST(SpatialSlicing, TakesThePointThatAFullScanOfThePlaneFindsBest) {

@@ -136,12 +136,12 @@ TEST(SpatialSlicing, BudgetStopAndTraceCountPointsLookedAt) {
   EXPECT_NEAR(trace.events.back().value, length(whole.route), 1e-9);
 
   request.trace = nullptr;
-  for (const std::uint64_t most : {std::uint64_t(0), all - 1}) {
-    request.budget.max_iterations = most;
+  for (const std::uint64_t maximum : {std::uint64_t(0), all - 1}) {
+    request.budget.max_iterations = maximum;
     const PlanResult some = plan(request);
     EXPECT_EQ(some.status, PlanStatus::timed_out);
     EXPECT_TRUE(some.budget_hit);
-    EXPECT_EQ(counter(some, "expanded"), std::int64_t(most));
+    EXPECT_EQ(counter(some, "expanded"), std::int64_t(maximum));
   }
   request.budget.max_iterations = all;
   EXPECT_EQ(plan(request).route, whole.route);

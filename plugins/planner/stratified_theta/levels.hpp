@@ -26,9 +26,9 @@ inline std::vector<int> rows_of(int level, int cells) {
 
 /// The level whose spacing on the longest axis is nearest to a cell, but not finer.
 inline int finest_level(const Cell& counts) {
-  const int most = std::max({counts[0], counts[1], counts[2], 2});
+  const int maximum = std::max({counts[0], counts[1], counts[2], 2});
   int level = 1;
-  while (1 << level <= most - 1) {
+  while (1 << level <= maximum - 1) {
     ++level;
   }
   return level;

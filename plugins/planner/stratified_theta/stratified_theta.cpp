@@ -77,7 +77,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     }
     const VoxelGrid& occupancy = *task.rules.grid();
     BudgetWatch watch(task.request.budget);
-    const int least = stratified::min_level(occupancy, params_.p_max, &watch);
+    const int minimum = stratified::min_level(occupancy, params_.p_max, &watch);
     if (watch.spent(task.settings.before.expanded)) {
       SearchResult none;
       none.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
@@ -87,7 +87,8 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
     const int finest = stratified::finest_level(occupancy.spec().counts);
     task.memory.reset(*Level(finest, occupancy).nodes().grid);
     SearchResult best;
-    for (int level = least; level <= std::min(finest, least + params_.start_levels - 1); ++level) {
+    for (int level = minimum; level <= std::min(finest, minimum + params_.start_levels - 1);
+         ++level) {
       SearchResult found = from_level(task, level, finest);
       task.settings.before = found.progress;
       const bool cut_short = found.budget_hit;
@@ -101,7 +102,7 @@ class StratifiedTheta final : public kit::AnyAnglePlanner {
       }
     }
     best.progress = task.settings.before;
-    best.more = {{"start_level", least}};
+    best.more = {{"start_level", minimum}};
     return best;
   }
 

@@ -15,9 +15,9 @@
 #include <algorithm>
 
 #include "altiplan/kit/smoothing/corners.hpp"
-#include "altiplan/kit/smoothing/spline.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
+#include "spline.hpp"
 
 namespace {
 
@@ -43,7 +43,7 @@ struct Params {
 /// The spline of the control points C - 2du, C - du, C, C + dv, C + 2dv: it begins and ends on the
 /// legs, in their directions.
 Polyline curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int samples) {
-  const kit::CubicSpline spline({c - 2 * d * u, c - d * u, c, c + d * v, c + 2 * d * v});
+  const bspline::CubicSpline spline({c - 2 * d * u, c - d * u, c, c + d * v, c + 2 * d * v});
   Polyline curve = {spline.at(0, 0)};
   for (std::size_t piece = 0; piece < spline.pieces(); ++piece) {
     for (int n = 1; n <= samples; ++n) {
@@ -58,19 +58,19 @@ Polyline curve_at(const Vec3& c, const Vec3& u, const Vec3& v, double d, int sam
 /// bends where it begins and ends.)
 double reach_for(double radius, const kit::Corner& corner, int samples) {
   const Polyline curve = curve_at(Vec3::Zero(), corner.into, corner.out_of, 0.5, samples);
-  double least = kInfinity;
+  double minimum = kInfinity;
   double tightest = 0;  // leg and turn of the tightest corner
   double turn = 0;
   for (std::size_t i = 0; i + 2 < curve.size(); ++i) {
     const Vec3 in = curve[i + 1] - curve[i];
     const Vec3 out = curve[i + 2] - curve[i + 1];
-    if (const double its = fillet_radius(in, out); its < least) {
-      least = its;
+    if (const double its = fillet_radius(in, out); its < minimum) {
+      minimum = its;
       tightest = std::min(in.norm(), out.norm());
       turn = turn_angle_in_space(in, out);
     }
   }
-  const double reach = radius / least;
+  const double reach = radius / minimum;
   return reach * (1 + kit::radius_margin(reach * tightest, turn));
 }
 
@@ -109,11 +109,11 @@ class BSpline final : public Smoother {
   /// The widest reach, halved per attempt while it exceeds what the turn radius needs; then what it
   /// needs. If halves of the legs are too short for that: their full free length.
   std::optional<double> reach_of(const kit::Corner& corner, int attempt, double needed) const {
-    const double most = params_.reach_m.value.value_or(kInfinity);
-    const double widest = std::min(corner.fair_reach(), most);
+    const double maximum = params_.reach_m.value.value_or(kInfinity);
+    const double widest = std::min(corner.fair_reach(), maximum);
     if (needed > widest) {
       const double free = std::min(
-          {corner.room_into, corner.last ? corner.leg_out_of : corner.leg_out_of / 2, most});
+          {corner.room_into, corner.last ? corner.leg_out_of : corner.leg_out_of / 2, maximum});
       return attempt == 0 ? std::optional(needed <= free ? needed : widest) : std::nullopt;
     }
     const auto halved = [&](int times) { return std::ldexp(widest, -times); };

@@ -92,10 +92,10 @@ TEST(BSpline, ACornerThatCanBeRoundedIs) {
     if (route.size() < 3) {
       continue;
     }
-    const double most = std::min((route[1] - route[0]).norm(), (route[2] - route[1]).norm()) / 2;
+    const double maximum = std::min((route[1] - route[0]).norm(), (route[2] - route[1]).norm()) / 2;
     bool any = false;
     for (int n = 1; n <= 60; ++n) {
-      any = any || check(rounded_at(route.waypoints(), most * n / 60, 4), request).ok();
+      any = any || check(rounded_at(route.waypoints(), maximum * n / 60, 4), request).ok();
     }
     const PlanResult result = make_smoother("bspline", "{tries: 12}")->smooth(route, request);
     EXPECT_TRUE(!any || result.route != route) << seed;

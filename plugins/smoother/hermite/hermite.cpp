@@ -257,8 +257,8 @@ class Fitting {
   }
 
   bool halve(std::size_t leg, std::size_t corner) {
-    const double least = params_.min_leg_m.value.value_or(curve_.length(leg) / 32);
-    const bool any = curve_.halve(leg, corner, std::max(least, min_span()));
+    const double minimum = params_.min_leg_m.value.value_or(curve_.length(leg) / 32);
+    const bool any = curve_.halve(leg, corner, std::max(minimum, min_span()));
     sample_beside(leg);
     sample_beside(leg + 1);
     return any;

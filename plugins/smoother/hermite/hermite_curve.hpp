@@ -55,13 +55,13 @@ class HermiteCurve {
   /// Halves the bend of the leg at one of its ends: inserts a node, or moves it half way to the
   /// corner. If it would get shorter than `least`, the corner is left sharp. False if nothing bends
   /// it.
-  bool halve(std::size_t leg, std::size_t corner, double least) {
+  bool halve(std::size_t leg, std::size_t corner, double minimum) {
     if (!rounded(corner)) {
       return false;
     }
     double& reach = corner == leg ? corners_[corner].behind : corners_[corner].before;
     const double half = reach / 2;
-    if (half < least) {
+    if (half < minimum) {
       straighten(corner);
     } else if (reach == lengths_[leg]) {
       corners_[leg].behind = corners_[leg + 1].before = half;

@@ -97,11 +97,12 @@ bool passes(const Polyline& route, const Polyline& points) {
 }
 
 double largest_turn(const Polyline& route) {
-  double most = 0;
+  double maximum = 0;
   for (std::size_t i = 1; i + 1 < route.size(); ++i) {
-    most = std::max(most, turn_angle_in_space(route[i] - route[i - 1], route[i + 1] - route[i]));
+    maximum =
+        std::max(maximum, turn_angle_in_space(route[i] - route[i - 1], route[i + 1] - route[i]));
   }
-  return most;
+  return maximum;
 }
 
 TEST(Hermite, PassesAllWaypointsWithoutAKink) {

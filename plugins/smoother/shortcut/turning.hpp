@@ -15,12 +15,12 @@ inline double turn_radius(const Route& route, const Request& request) {
   if (request.limits.min_turn_radius > 0) {
     return request.limits.min_turn_radius;
   }
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
-    least = leg.turns() ? std::min(least, leg.radius) : least;
+    minimum = leg.turns() ? std::min(minimum, leg.radius) : minimum;
   }
-  return least;
+  return minimum;
 }
 
 /// Shortens one route with turns: stretches of it become Dubins paths between the poses at their

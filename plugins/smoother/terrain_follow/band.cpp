@@ -32,11 +32,11 @@ Plan::Plan(const Polyline& route) {
 }
 
 double Plan::span(const Polyline& route) {
-  double most = 0;
+  double maximum = 0;
   for (const Vec3& p : route) {
-    most = std::max(most, (p - route.front()).head<2>().norm());
+    maximum = std::max(maximum, (p - route.front()).head<2>().norm());
   }
-  return most;
+  return maximum;
 }
 
 Plan::Share Plan::share_at(double s) const {

@@ -93,14 +93,14 @@ void FewestLegs::reach(const Node& from, std::size_t station, double low, double
   }
   touched_[station] = true;
   const auto found = forbidden_.find(from);
-  const double least = run < limits_.min_length ? limits_.min_length : 0;
+  const double minimum = run < limits_.min_length ? limits_.min_length : 0;
   auto k = std::size_t(std::lower_bound(heights.begin(), heights.end(), low - kRounding) -
                        heights.begin());
   for (; k < heights.size() && heights[k] <= high + kRounding; ++k) {
     const double climb = std::abs(heights[k] - z0);
     Reached& there = reached_[station][k];
     if (cost + climb >= there.cost ||
-        (least > 0 && std::hypot(run, climb) < least - altiplan::kLengthTolerance) ||
+        (minimum > 0 && std::hypot(run, climb) < minimum - altiplan::kLengthTolerance) ||
         (found != forbidden_.end() && found->second.count({station, k}) > 0)) {
       continue;
     }

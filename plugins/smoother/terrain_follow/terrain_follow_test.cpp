@@ -191,11 +191,11 @@ void compare(int rounds, std::uint64_t seed) {
     request.limits.max_sink = radians(random.uniform(10, 90));
     request.limits.min_leg = random.uniform() < 0.3 ? 30 : 0;
     if (random.uniform() < 0.5) {
-      const double most = random.uniform(low + width / 2, low + width);
+      const double maximum = random.uniform(low + width / 2, low + width);
       apply_constraints(
           request,
           {{"ground_distance",
-            make_constraint("ground_distance", "{max_m: " + std::to_string(most) + "}")}},
+            make_constraint("ground_distance", "{max_m: " + std::to_string(maximum) + "}")}},
           AppliesTo::route);
       request.limits.altitude = {{AltitudeBand::Datum::ground, low, kInfinity}};
     }

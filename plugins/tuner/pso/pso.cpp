@@ -100,7 +100,7 @@ class Swarm final : public Search {
   }
 
   void move(Particle& particle) const {
-    const double most = params_.max_velocity;
+    const double maximum = params_.max_velocity;
     for (std::size_t i = 0; i < particle.x.size(); ++i) {
       const double r1 = particle.random.uniform();
       const double r2 = particle.random.uniform();
@@ -109,7 +109,7 @@ class Swarm final : public Search {
       const double to_p = particle.p.at.empty() ? 0 : particle.p.at[i] - x;
       const double to_g = g_.at.empty() ? 0 : g_.at[i] - x;
       v = params_.inertia * v + params_.own_pull * r1 * to_p + params_.common_pull * r2 * to_g;
-      v = std::clamp(v, -most, most);
+      v = std::clamp(v, -maximum, maximum);
       x = std::clamp(x + v, 0.0, 1.0);
     }
   }

@@ -34,7 +34,7 @@ Batches search(const char* yaml, const std::vector<Dimension>& space, const Scor
   return batches;
 }
 
-double least(const Batches& batches, const Score& score) {
+double minimum(const Batches& batches, const Score& score) {
   double best = kInfinity;
   for (const auto& batch : batches) {
     for (const Point& point : batch) {
@@ -70,12 +70,12 @@ const std::vector<Dimension> kSquare{{"x", -5, 5, -1}, {"y", -5, 5, -1}};
 TEST(Pso, SettlesInTheMinimum) {
   const std::vector<Dimension> space(5, {"x", -5, 5, -1});
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    EXPECT_LT(least(search(kSettling, space, sphere, seed), sphere), 1e-6) << seed;
-    EXPECT_LT(least(search(kSettling, kSquare, rosenbrock, seed), rosenbrock), 1e-4) << seed;
+    EXPECT_LT(minimum(search(kSettling, space, sphere, seed), sphere), 1e-6) << seed;
+    EXPECT_LT(minimum(search(kSettling, kSquare, rosenbrock, seed), rosenbrock), 1e-4) << seed;
   }
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    found += least(search(kSettling, kSquare, rastrigin, seed), rastrigin) < 1e-6;
+    found += minimum(search(kSettling, kSquare, rastrigin, seed), rastrigin) < 1e-6;
   }
   EXPECT_GE(found, 12);  // the other swarms settle next to it
 }
@@ -83,7 +83,7 @@ TEST(Pso, SettlesInTheMinimum) {
 /// With the paper's parameters the swarm does not settle, but samples ever nearer.
 TEST(Pso, DefaultsComeNear) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    EXPECT_LT(least(search("{}", kSquare, sphere, seed), sphere), 0.01) << seed;
+    EXPECT_LT(minimum(search("{}", kSquare, sphere, seed), sphere), 0.01) << seed;
   }
 }
 
@@ -115,7 +115,7 @@ TEST(Pso, FindsWeightsOnASimplex) {
     return std::hypot(x[0] - 0.6, x[1] - 0.3, x[2] - 0.1);
   };
   const Batches batches = search(kSettling, space, distance);
-  EXPECT_LT(least(batches, distance), 1e-4);
+  EXPECT_LT(minimum(batches, distance), 1e-4);
   for (const auto& batch : batches) {
     for (const Point& point : batch) {
       EXPECT_NEAR(point[0] + point[1] + point[2], 1, 1e-12);
@@ -133,7 +133,7 @@ TEST(Pso, FailuresDoNotPull) {
   const Batches failed = search("{inertia: 0}", kSquare, [](const Point&) { return kInfinity; });
   EXPECT_EQ(failed.back(), failed.front());
   const Score corner = [](const Point& x) { return x[0] > 4 && x[1] > 4 ? sphere(x) : kInfinity; };
-  EXPECT_LT(least(search("{}", kSquare, corner), corner), 19);
+  EXPECT_LT(minimum(search("{}", kSquare, corner), corner), 19);
 }
 
 TEST(Pso, ScoresThatAreNoNumbersAreRefused) {

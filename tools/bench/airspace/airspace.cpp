@@ -2,8 +2,8 @@
 // Published airspace: how fast a file is read, and places asked for at given times.
 #include <algorithm>
 
-#include "altiplan/kit/formats/airspace_index.hpp"
-#include "altiplan/kit/formats/input_file.hpp"
+#include "altiplan/formats/airspace_index.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "altiplan/random.hpp"
 #include "measuring.hpp"
 #include "subcommand.hpp"
@@ -11,7 +11,7 @@
 namespace altiplan::bench {
 namespace {
 
-using kit::AirspaceIndex;
+using formats::AirspaceIndex;
 
 struct Question {
   AirspaceIndex::Place place;
@@ -19,11 +19,11 @@ struct Question {
 };
 
 /// Around the zones, up to 6,000 m, within ten years.
-std::vector<Question> questions(const std::vector<kit::Zone>& zones, std::size_t count) {
+std::vector<Question> questions(const std::vector<formats::Zone>& zones, std::size_t count) {
   Box box = Box::empty();
-  for (const kit::Zone& zone : zones) {
-    for (const kit::ZoneVolume& volume : zone.volumes) {
-      for (const kit::Point2& corner : volume.polygon.outline) {
+  for (const formats::Zone& zone : zones) {
+    for (const formats::ZoneVolume& volume : zone.volumes) {
+      for (const formats::Point2& corner : volume.polygon.outline) {
         box = box.united({{corner[0], corner[1], -100}, {corner[0], corner[1], 6000}});
       }
     }
@@ -41,9 +41,9 @@ std::vector<Question> questions(const std::vector<kit::Zone>& zones, std::size_t
 }
 
 Json measure(const std::string& file, std::size_t count) {
-  const std::string text = kit::read_file(file);
+  const std::string text = formats::read_file(file);
   double before = thread_s();
-  const std::optional<kit::Airspace> airspace = kit::read_airspace(file, text);
+  const std::optional<formats::Airspace> airspace = formats::read_airspace(file, text);
   if (!airspace) {
     throw Error(file + ": expected published airspace");
   }

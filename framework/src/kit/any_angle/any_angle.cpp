@@ -175,12 +175,12 @@ bool AnyAngleSearch::set_vertex(Node s) {
   if (s == start_.node || sees(parent(s), s)) {
     return true;
   }
-  std::uint32_t least = kNone;
+  std::uint32_t minimum = kNone;
   Node best = kNone;
   const auto consider = [&](Node from, bool is_free) {
     const std::uint32_t through = g(from) + distance(from, s);
-    if (through < least && (is_free || sees(from, s))) {
-      least = through;
+    if (through < minimum && (is_free || sees(from, s))) {
+      minimum = through;
       best = from;
     }
   };
@@ -202,7 +202,7 @@ bool AnyAngleSearch::set_vertex(Node s) {
   }
   reached_.at(s) = 0;  // may be generated again
   if (best != kNone) {
-    take(s, best, least, heuristic(s));
+    take(s, best, minimum, heuristic(s));
   }
   return false;
 }

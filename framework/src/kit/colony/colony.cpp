@@ -16,10 +16,7 @@ constexpr std::size_t kTracedAnts = 10;
 }  // namespace
 
 void ColonyParams::describe(Fields& f) {
-  f("cell_m", cell_m)
-      .unit("m")
-      .at_least(0.001)
-      .doc("cell edge length on each axis; a layer with its own cells overrides it");
+  describe_cell(f);
   f("ants", ants).range(1, 1'000'000).doc("number of ants in the colony");
   f("iterations", iterations)
       .range(1, 1'000'000)
@@ -39,10 +36,7 @@ void ColonyParams::describe(Fields& f) {
       .unit("m")
       .greater_than(0)
       .doc("maximum length of an ant's walk; auto: three times the volume's length and width");
-  f("max_memory_mb", max_memory_mb)
-      .unit("MB")
-      .at_least(1)
-      .doc("memory limit of the lattice; a larger one is refused before allocation");
+  describe_memory(f);
 }
 
 Colony::Colony(const Request& request, const ColonyParams& params, const Lattice& lattice)

@@ -20,10 +20,10 @@ using Lengths = std::array<double, 6>;
 struct Stretched {
   static constexpr int kSize = 8;
   const PosePair& pair;
-  double least_radius;
+  double min_radius;
 
   bool has(DubinsWord) const { return true; }
-  double radius(double x) const { return least_radius * std::exp(0.4 * x); }
+  double radius(double x) const { return min_radius * std::exp(0.4 * x); }
   Lengths lengths(double x) const { return pair.lengths(radius(x)); }
   double length(double x, DubinsWord word) const { return pair.length(radius(x), word); }
   std::optional<AirplanePath> path(double x, DubinsWord word) const {
@@ -36,25 +36,25 @@ struct Stretched {
 struct AfterTurn {
   static constexpr int kSize = 16;
   const PosePair& pair;
-  double least_radius;
+  double min_radius;
   int sense;
 
   bool has(DubinsWord word) const { return turn_sense(word, 0) != sense; }
-  double radius(double) const { return least_radius; }
+  double radius(double) const { return min_radius; }
   double angle(double x) const { return x * (kCircle / kSize); }
-  PosePair rest(double x) const { return pair.after_turn(sense * angle(x), least_radius); }
+  PosePair rest(double x) const { return pair.after_turn(sense * angle(x), min_radius); }
   Lengths lengths(double x) const {
-    Lengths all = rest(x).lengths(least_radius);
+    Lengths all = rest(x).lengths(min_radius);
     for (double& length : all) {
-      length += least_radius * angle(x);
+      length += min_radius * angle(x);
     }
     return all;
   }
   double length(double x, DubinsWord word) const {
-    return rest(x).length(least_radius, word) + least_radius * angle(x);
+    return rest(x).length(min_radius, word) + min_radius * angle(x);
   }
   std::optional<AirplanePath> path(double x, DubinsWord word) const {
-    const auto found = rest(x).path(least_radius, word);
+    const auto found = rest(x).path(min_radius, word);
     return found ? std::optional(AirplanePath{*found, sense * angle(x)}) : std::nullopt;
   }
 };
@@ -241,17 +241,17 @@ AirplanePath path_of_length(const PosePair& pair, double radius, double least_le
 
 std::optional<AirplanePath> airplane_path(const Pose& from, const Pose& to,
                                           const AirplaneLimits& limits) {
-  const double least = limits.least_length(to.position.z() - from.position.z());
-  if (least == kInfinity) {
+  const double minimum = limits.least_length(to.position.z() - from.position.z());
+  if (minimum == kInfinity) {
     return std::nullopt;
   }
-  return path_of_length(PosePair(from, to), limits.radius, least);
+  return path_of_length(PosePair(from, to), limits.radius, minimum);
 }
 
 double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& limits,
                        double at_most) {
-  const double least = limits.least_length(to.position.z() - from.position.z());
-  if (least > at_most) {
+  const double minimum = limits.least_length(to.position.z() - from.position.z());
+  if (minimum > at_most) {
     return kInfinity;
   }
   const PosePair pair(from, to);
@@ -260,15 +260,15 @@ double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& l
   if (shortest > at_most) {
     return kInfinity;
   }
-  if (shortest >= least || least == kInfinity) {
-    return std::max(shortest, least);
+  if (shortest >= minimum || minimum == kInfinity) {
+    return std::max(shortest, minimum);
   }
   // Any length is possible with a circle more than LSL or RSR has, and far away with an extra turn.
   const double with_circle = std::min(lengths[0], lengths[1]) + kCircle * limits.radius;
-  if (with_circle <= least || pair.distance() >= 8 * limits.radius) {
-    return least;
+  if (with_circle <= minimum || pair.distance() >= 8 * limits.radius) {
+    return minimum;
   }
-  const double length = path_of_length(pair, limits.radius, least).length();
+  const double length = path_of_length(pair, limits.radius, minimum).length();
   return length <= at_most ? length : kInfinity;
 }
 

@@ -178,11 +178,11 @@ PosePair PosePair::after_turn(double angle, double radius) const {
 
 double PosePair::length(double radius) const {
   const Sides sides(*this, radius);
-  Two least = min(sides.same(), sides.cross().sum());
+  Two minimum = min(sides.same(), sides.cross().sum());
   if (sides.have_triple()) {
-    least = min(least, sides.triple().sum());
+    minimum = min(minimum, sides.triple().sum());
   }
-  return radius * std::min(least[0], least[1]);
+  return radius * std::min(minimum[0], minimum[1]);
 }
 
 double PosePair::length(double radius, DubinsWord word) const {

@@ -28,8 +28,8 @@ double root_between(const Function& f, double a, double fa, double b, double fb)
     a = x;
     fa = fx;
     const double best = std::abs(fa) < std::abs(fb) ? a : b;
-    const double least = 4e-16 * std::abs(best) / std::abs(b - a);
-    if (fa == 0 || least > 0.5) {
+    const double minimum = 4e-16 * std::abs(best) / std::abs(b - a);
+    if (fa == 0 || minimum > 0.5) {
       return best;
     }
     const double xi = (a - b) / (c - b);
@@ -39,7 +39,7 @@ double root_between(const Function& f, double a, double fa, double b, double fb)
       share = fa / (fb - fa) * (fc / (fb - fc)) +
               (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb));
     }
-    share = std::clamp(share, least, 1 - least);
+    share = std::clamp(share, minimum, 1 - minimum);
   }
   return a;
 }

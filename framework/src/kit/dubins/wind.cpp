@@ -103,11 +103,11 @@ class WindSearch {
     const Moving& m = m_[right];
     const double a = 1 - m.dx * m.dx - m.dy * m.dy;
     const double towards = m.x * m.dx + m.y * m.dy;
-    const double least =
+    const double minimum =
         std::floor((begin_ - std::sqrt(m.squared(begin_)) - radius_ * turn_[right]) / circle_);
     // With one circle more than the least, there is a path.
     for (int more = 0; more < 3; ++more) {
-      const double sum = radius_ * turn_[right] + (std::max(0.0, least) + more) * circle_;
+      const double sum = radius_ * turn_[right] + (std::max(0.0, minimum) + more) * circle_;
       const double b = sum + towards;
       const double c = sum * sum - m.squared(0);
       const double s = (b + std::sqrt(std::max(0.0, b * b - a * c))) / a;
@@ -245,22 +245,22 @@ std::optional<WindPath> wind_path(const Pose& from, const Pose& to, double radiu
 
 std::optional<WindPath> wind_path(const Pose& from, const Pose& to, const AirplaneLimits& limits,
                                   const Air& air, double at_most) {
-  const double least = limits.least_length(to.position.z() - from.position.z());
-  if (least == kInfinity || least > at_most) {
+  const double minimum = limits.least_length(to.position.z() - from.position.z());
+  if (minimum == kInfinity || minimum > at_most) {
     return std::nullopt;
   }
   const double end = at_most * (1 + 1e-12);
   const auto quickest = quickest_path(from, to, limits.radius, air, end);
-  if (!quickest || quickest->through_air.length() >= least) {
+  if (!quickest || quickest->through_air.length() >= minimum) {
     return quickest;
   }
   const PosePair pair(from, to);
   const Vec3 wind = air.wind / air.speed;
-  const AirplanePath path = path_of_length(pair.displaced(-least * wind), limits.radius, least);
-  if (path.length() <= least * (1 + 1e-9)) {
+  const AirplanePath path = path_of_length(pair.displaced(-minimum * wind), limits.radius, minimum);
+  if (path.length() <= minimum * (1 + 1e-9)) {
     return WindPath{path, air};
   }
-  const auto longer = WindSearch(pair, limits.radius, wind, least, end).run();
+  const auto longer = WindSearch(pair, limits.radius, wind, minimum, end).run();
   return longer ? std::optional(WindPath{{*longer}, air}) : std::nullopt;
 }
 }  // namespace altiplan::kit

@@ -62,10 +62,10 @@ DirectionMask GroundSteps::above(const Level* levels, int level) {
 void GroundSteps::count(std::size_t column, int level, DirectionMask refused) {
   const auto& lowest = columns_.at(column).lowest;
   for (; refused != 0; refused &= refused - 1) {
-    const Level least = lowest[std::size_t(__builtin_ctz(refused))];
-    ++(least >= kNever - 1 ? refused_.no_ground
-       : level < least     ? refused_.too_low
-                           : refused_.too_high);
+    const Level minimum = lowest[std::size_t(__builtin_ctz(refused))];
+    ++(minimum >= kNever - 1 ? refused_.no_ground
+       : level < minimum     ? refused_.too_low
+                             : refused_.too_high);
   }
 }
 

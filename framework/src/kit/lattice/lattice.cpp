@@ -42,9 +42,9 @@ void expect_fitting(const Vec3& cell, const Box& box) {
 
 /// Steps far beyond the volume would be of no use, and lengths lose all digits.
 void expect_useful(const Vec3& cell, const Box& box) {
-  const double most = 1e6 * std::max(1.0, (box.max - box.min).maxCoeff());
+  const double maximum = 1e6 * std::max(1.0, (box.max - box.min).maxCoeff());
   for (int axis = 0; axis < 3; ++axis) {
-    if (cell[axis] > most) {
+    if (cell[axis] > maximum) {
       char text[160];
       std::snprintf(text, sizeof text,
                     "a cell of %.6g m on axis %c is over a million times larger than the volume",
@@ -153,24 +153,24 @@ double Lattice::distance(const Cell& a, const Cell& b) const {
   if (neighbourhood_ == Neighbourhood::faces) {
     return n[0] * spec_.cell.x() + n[1] * spec_.cell.y() + n[2] * spec_.cell.z();
   }
-  std::size_t most = 0;
+  std::size_t maximum = 0;
   std::size_t middle = 1;
-  std::size_t least = 2;
-  if (n[most] < n[middle]) {
-    std::swap(most, middle);
+  std::size_t minimum = 2;
+  if (n[maximum] < n[middle]) {
+    std::swap(maximum, middle);
   }
-  if (n[middle] < n[least]) {
-    std::swap(middle, least);
+  if (n[middle] < n[minimum]) {
+    std::swap(middle, minimum);
   }
-  if (n[most] < n[middle]) {
-    std::swap(most, middle);
+  if (n[maximum] < n[middle]) {
+    std::swap(maximum, middle);
   }
   const auto along = [&](std::size_t set) {  // axes as bits: any direction along them
     return lengths_[std::size_t(direction(int(set & 1), int(set >> 1 & 1), int(set >> 2 & 1)))];
   };
-  const std::size_t two = (std::size_t{1} << most) | (std::size_t{1} << middle);
-  return n[least] * along(7) + (n[middle] - n[least]) * along(two) +
-         (n[most] - n[middle]) * along(std::size_t{1} << most);
+  const std::size_t two = (std::size_t{1} << maximum) | (std::size_t{1} << middle);
+  return n[minimum] * along(7) + (n[middle] - n[minimum]) * along(two) +
+         (n[maximum] - n[middle]) * along(std::size_t{1} << maximum);
 }
 
 Lattice::Link Lattice::nearest(const Vec3& p) const {

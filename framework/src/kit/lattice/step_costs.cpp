@@ -16,15 +16,15 @@ constexpr std::uint32_t kCubes[] = {41, 1463, 4109, 20586, 192070, 326491, 21510
 constexpr double kFineEdge = 25000;
 
 /// Cost of an edge: one of the records if there are any, else any integer.
-double edge_cost(std::span<const std::uint32_t> records, StepCosts::Scale scale, double most) {
+double edge_cost(std::span<const std::uint32_t> records, StepCosts::Scale scale, double maximum) {
   if (scale == StepCosts::Scale::ratio) {
-    return std::min(most, double(records.front()));
+    return std::min(maximum, double(records.front()));
   }
   if (scale == StepCosts::Scale::fine) {
-    most = std::min(most, kFineEdge);
+    maximum = std::min(maximum, kFineEdge);
   }
-  const auto beyond = std::upper_bound(records.begin(), records.end(), most);
-  return beyond == records.begin() ? std::floor(most) : double(*(beyond - 1));
+  const auto beyond = std::upper_bound(records.begin(), records.end(), maximum);
+  return beyond == records.begin() ? std::floor(maximum) : double(*(beyond - 1));
 }
 }  // namespace
 

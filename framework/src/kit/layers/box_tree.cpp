@@ -17,16 +17,16 @@ constexpr float kMax = std::numeric_limits<float>::max();
 constexpr FloatBox kNothing{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
 
 FloatBox grown(const Box& box) {
-  double most = 0;
+  double maximum = 0;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {box.min[axis], box.max[axis]}) {
-      most = std::abs(side) <= kTreeReach ? std::max(most, std::abs(side)) : most;
+      maximum = std::abs(side) <= kTreeReach ? std::max(maximum, std::abs(side)) : maximum;
     }
   }
   FloatBox result{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double min = box.min[axis] - kTreeGrowth * most;
-    const double max = box.max[axis] + kTreeGrowth * most;
+    const double min = box.min[axis] - kTreeGrowth * maximum;
+    const double max = box.max[axis] + kTreeGrowth * maximum;
     result.min[axis] =
         min >= -kTreeReach ? rounded_down(std::min(min, kTreeReach)) : -float(kInfinity);
     result.max[axis] =

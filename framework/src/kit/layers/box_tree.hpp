@@ -63,8 +63,8 @@ struct TreeLeg {
 
   TreeLeg(const Vec3& a, const Vec3& b, double reach) {
     constexpr double kNoWay = 1e-30;  // keeps anything beyond a side beyond it at any time
-    const double most = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-    const double grown = reach + kTreeGrowth * most;
+    const double maximum = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    const double grown = reach + kTreeGrowth * maximum;
     for (int axis = 0; axis < 3; ++axis) {
       from[axis][0] = rounded_up(a[axis] + grown);
       from[axis][1] = rounded_down(a[axis] - grown);
@@ -129,12 +129,12 @@ inline std::int32_t min_of(const Keys& keys) {
   const LaneBits eight = keys.half[0] < keys.half[1] ? keys.half[0] : keys.half[1];
   const auto low = __builtin_shufflevector(eight, eight, 0, 1, 2, 3);
   const auto high = __builtin_shufflevector(eight, eight, 4, 5, 6, 7);
-  auto least = low < high ? low : high;
-  auto other = __builtin_shufflevector(least, least, 2, 3, 0, 1);
-  least = other < least ? other : least;
-  other = __builtin_shufflevector(least, least, 1, 0, 3, 2);
-  least = other < least ? other : least;
-  return least[0];
+  auto minimum = low < high ? low : high;
+  auto other = __builtin_shufflevector(minimum, minimum, 2, 3, 0, 1);
+  minimum = other < minimum ? other : minimum;
+  other = __builtin_shufflevector(minimum, minimum, 1, 0, 3, 2);
+  minimum = other < minimum ? other : minimum;
+  return minimum[0];
 }
 
 /// The lanes whose boxes the leg may reach, one bit each: where it is between the sides on all axes

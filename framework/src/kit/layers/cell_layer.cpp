@@ -47,10 +47,10 @@ double CellLayer::depth(const Vec3& p) const {
   const GridSpec& spec = cells_.spec();
   const Cell at = spec.cell_of(p);
   const Box whole = spec.box();
-  double least = std::max(0.0, std::min((p - whole.min).minCoeff(), (whole.max - p).minCoeff()));
+  double minimum = std::max(0.0, std::min((p - whole.min).minCoeff(), (whole.max - p).minCoeff()));
   const double edge = spec.cell.minCoeff();
   // All cells nearer than (ring - 1) edges lie within the ring.
-  for (int ring = 0; least > std::max(0, ring - 1) * edge; ++ring) {
+  for (int ring = 0; minimum > std::max(0, ring - 1) * edge; ++ring) {
     Cell low{};
     Cell high{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -64,13 +64,13 @@ double CellLayer::depth(const Vec3& p) const {
           if ((side || std::abs(i - at[0]) == ring) && !cells_.blocked(i, j, k)) {
             const Box free = spec.cell_box({i, j, k});
             const Vec3 off = (free.min - p).cwiseMax(p - free.max).cwiseMax(0.0);
-            least = std::min(least, off.norm());
+            minimum = std::min(minimum, off.norm());
           }
         }
       }
     }
   }
-  return least;
+  return minimum;
 }
 
 bool CellLayer::do_blocked(const Vec3& a, const Vec3& b, double r) const {

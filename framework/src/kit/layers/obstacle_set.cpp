@@ -76,8 +76,8 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
   std::array<Open, kMaxLevels> way;
   std::size_t depth = 0;
   const float point[3] = {float(p.x()), float(p.y()), float(p.z())};
-  double least = kInfinity;
-  std::int32_t limit = key_of(least);
+  double minimum = kInfinity;
+  std::int32_t limit = key_of(minimum);
   for (const BoxNode* node = nodes;;) {
     Open& here = way[depth];
     keys_of(*node, point, here.keys);
@@ -92,8 +92,8 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
         continue;
       }
       for (std::uint32_t lanes = here.lanes;;) {
-        least = std::min(least, signed_distance(shapes[std::size_t(node->box[lane])], p));
-        limit = key_of(least);
+        minimum = std::min(minimum, signed_distance(shapes[std::size_t(node->box[lane])], p));
+        limit = key_of(minimum);
         lanes &= lanes_within(here.keys, limit);
         if (lanes == 0) {
           break;
@@ -104,7 +104,7 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
     }
     for (;; --depth) {
       if (depth == 0) {
-        return least;
+        return minimum;
       }
       Open& above = way[depth - 1];
       above.lanes &= lanes_within(above.keys, limit);
@@ -287,11 +287,11 @@ double ObstacleSet::clearance(const Vec3& p) const {
   if (impl_->count > 0 && is_in_reach(p)) {
     return min_distance(impl_->nodes.data(), solids, p);
   }
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t n = 0; n < impl_->count; ++n) {
-    least = std::min(least, signed_distance(solids[n], p));
+    minimum = std::min(minimum, signed_distance(solids[n], p));
   }
-  return least;
+  return minimum;
 }
 
 bool ObstacleSet::blocked(const Vec3& a, const Vec3& b, double r) const {

@@ -39,8 +39,8 @@ inline constexpr double kNoLimit = 0x1p999;
 inline int lane_in(double key) { return int(std::bit_cast<std::int64_t>(key) & 7); }
 /// Upper bound of the keys of figures up to this one.
 inline double limit_of(double figure) {
-  const double most = figure < kNoLimit ? figure : kNoLimit;
-  return std::bit_cast<double>(std::bit_cast<std::int64_t>(most) | 7);
+  const double maximum = figure < kNoLimit ? figure : kNoLimit;
+  return std::bit_cast<double>(std::bit_cast<std::int64_t>(maximum) | 7);
 }
 
 /// Makes keys of bounds; unused parts are beyond any limit.
@@ -60,13 +60,13 @@ inline double min_of(const Four& numbers) {
   using Two = double __attribute__((vector_size(16)));
   const Two low = __builtin_shufflevector(numbers, numbers, 0, 1);
   const Two high = __builtin_shufflevector(numbers, numbers, 2, 3);
-  const Two least = low < high ? low : high;
-  return least[0] < least[1] ? least[0] : least[1];
+  const Two minimum = low < high ? low : high;
+  return minimum[0] < minimum[1] ? minimum[0] : minimum[1];
 }
 
 inline double min_of(const Keys& keys) {
-  const Four least = keys.half[0] < keys.half[1] ? keys.half[0] : keys.half[1];
-  return min_of(least);
+  const Four minimum = keys.half[0] < keys.half[1] ? keys.half[0] : keys.half[1];
+  return min_of(minimum);
 }
 
 inline Box box_of(const Leaf& leaf) {
@@ -119,7 +119,7 @@ inline void squares(const Leaf& leaf, int quarter, const Vec3& p, Four& square) 
 
 /// The point with the smallest figure, the smallest number among equals.
 struct Best {
-  double least = kBeyond;
+  double minimum = kBeyond;
   std::size_t number = KdTree::kNone;
 
   /// Considers the points of a leaf with these figures, by quarter.
@@ -130,11 +130,11 @@ struct Best {
       max_promising = figure < max_promising ? figure : max_promising;
     }
     const double here = min_of(max_promising);
-    if (here > least) {
+    if (here > minimum) {
       return;
     }
-    if (here < least) {
-      least = here;
+    if (here < minimum) {
+      minimum = here;
       number = KdTree::kNone;
     }
     for (std::uint32_t slot = 0; slot < Leaf::kMax; ++slot) {

@@ -220,7 +220,7 @@ void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added)
   all.back() = added;
   std::array<Part, kParts> best{};
   std::size_t stay = 0;
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     std::sort(all.begin(), all.end(), [&](const Part& a, const Part& b) {
       const double x = a.box.min[axis] + a.box.max[axis];
@@ -228,8 +228,8 @@ void KdTree::halve(std::uint32_t level, std::uint32_t branch, const Part& added)
       return x != y ? x < y : a.index < b.index;
     });
     const auto [badness, count] = best_cut(all);
-    if (badness < least) {
-      least = badness;
+    if (badness < minimum) {
+      minimum = badness;
       best = all;
       stay = count;
     }

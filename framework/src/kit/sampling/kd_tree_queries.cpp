@@ -13,7 +13,7 @@ using namespace kd;
 struct Nearest {
   const Vec3& p;
   Best best{};
-  double limit() const { return limit_of(best.least); }
+  double limit() const { return limit_of(best.minimum); }
   void keys_of(const Branch& branch, Keys& keys) const { distance_keys(branch, p, keys); }
   void see(const Leaf& leaf) {
     Four square[4];
@@ -44,7 +44,7 @@ struct LeastSum {
   double slack = 0;
   Best best{};
 
-  double limit() const { return limit_of(best.least + slack); }
+  double limit() const { return limit_of(best.minimum + slack); }
 
   void keys_of(const Branch& branch, Keys& keys) const {
     for (int half = 0; half < 2; ++half) {
@@ -53,7 +53,7 @@ struct LeastSum {
     make_keys(branch.count, keys);
   }
 
-  void bound(const Branch& branch, int half, Four& least) const {
+  void bound(const Branch& branch, int half, Four& minimum) const {
     Four t{};
     for (int axis = 0; axis < 3; ++axis) {
       const Four& low = four(&branch.side[axis][0][4 * half]);
@@ -80,16 +80,16 @@ struct LeastSum {
     constexpr double kNoDistance = 1e-100;
     const Four p_pull = p_weight / (p_distance > kNoDistance ? p_distance : kNoDistance + Four{});
     const Four q_pull = q_weight / (q_distance > kNoDistance ? q_distance : kNoDistance + Four{});
-    least = p_weight * p_distance + q_weight * q_distance;
+    minimum = p_weight * p_distance + q_weight * q_distance;
     for (int axis = 0; axis < 3; ++axis) {
       const Four& low = four(&branch.side[axis][0][4 * half]);
       const Four& high = four(&branch.side[axis][1][4 * half]);
       const Four gradient = p_pull * (c[axis] - p[axis]) + q_pull * (c[axis] - q[axis]);
       const Four down = gradient * (low - c[axis]);
       const Four up = gradient * (high - c[axis]);
-      least += down < up ? down : up;
+      minimum += down < up ? down : up;
     }
-    least = least > 0.0 ? least : Four{};
+    minimum = minimum > 0.0 ? minimum : Four{};
   }
 
   void see(const Leaf& leaf) {
@@ -107,8 +107,8 @@ struct LeastSum {
   }
 };
 
-ALTIPLAN_CLONES void find_least_sum(const Leaf* leaves, const Branch* branches, std::uint32_t root,
-                                    std::uint32_t height, LeastSum& query) {
+ALTIPLAN_CLONES void find_min_sum(const Leaf* leaves, const Branch* branches, std::uint32_t root,
+                                  std::uint32_t height, LeastSum& query) {
   search(leaves, branches, root, height, query);
 }
 
@@ -178,7 +178,7 @@ std::size_t KdTree::min_sum(const Vec3& p, double p_weight, const Vec3& q, doubl
         (all.max - all.min).sum() + (p - all.min).cwiseAbs().sum() + (q - all.min).cwiseAbs().sum();
     query.slack = 1e-13 * (p_weight + q_weight) * farthest;
   }
-  find_least_sum(leaves_.data(), branches_.data(), root_, height_, query);
+  find_min_sum(leaves_.data(), branches_.data(), root_, height_, query);
   return query.best.number;
 }
 

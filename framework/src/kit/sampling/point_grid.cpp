@@ -183,31 +183,31 @@ void PointGrid::visit_ring(const std::array<int, 3>& middle, int ring, const Vis
 /// Among at most kFewest points, all in one bucket, in chunks in the order of their numbers.
 ALTIPLAN_CLONES std::uint32_t PointGrid::nearest_of_all(const Vec3& p) const {
   constexpr int kParts = kWide / kLanes;
-  Wide least[kParts];
+  Wide minimum[kParts];
   WideMask which[kParts];
   for (int part = 0; part < kParts; ++part) {
-    least[part] = Wide{} + kInfinity;
+    minimum[part] = Wide{} + kInfinity;
     which[part] = WideMask{};
   }
   for (std::size_t c = 1; c < chunks_.size(); ++c) {
     for (int part = 0; part < kParts; ++part) {
       Wide squares;
       squares_of(chunks_[c], part * kLanes, p, squares);
-      const WideMask nearer = squares < least[part];
-      least[part] = nearer ? squares : least[part];
+      const WideMask nearer = squares < minimum[part];
+      minimum[part] = nearer ? squares : minimum[part];
       which[part] = nearer ? WideMask{} + std::int64_t(c) : which[part];
     }
   }
   double square = kInfinity;
   for (int place = 0; place < kWide; ++place) {
-    square = std::min(square, least[place / kLanes][place % kLanes]);
+    square = std::min(square, minimum[place / kLanes][place % kLanes]);
   }
   std::int64_t best = std::int64_t(kept_.size());  // index in the list: numbers ascend there
   for (int place = 0; place < kWide; ++place) {
     const int part = place / kLanes;
     const int lane = place % kLanes;
     const std::int64_t at = (which[part][lane] - 1) * kWide + place;
-    best = least[part][lane] <= square && at < best ? at : best;
+    best = minimum[part][lane] <= square && at < best ? at : best;
   }
   return kept_[std::size_t(best)];
 }
@@ -220,19 +220,19 @@ std::size_t PointGrid::nearest(const Vec3& p) const {
     return nearest_of_all(p);
   }
   std::size_t best = kNone;
-  double least = kInfinity;
+  double minimum = kInfinity;
   const std::array<int, 3> middle = bucket_of(p);
   const int rings = *std::max_element(counts_.begin(), counts_.end());
   for (int ring = 0; ring < rings; ++ring) {
     // Minimum distance of the buckets of this ring: whole edges lie between.
     const double gap = std::max(0, ring - 1) * edge_.minCoeff() * (1 - 1e-9);
-    if (gap * gap > least) {
+    if (gap * gap > minimum) {
       break;
     }
     visit_ring(middle, ring, [&](std::size_t bucket) {
-      visit_bucket(bucket, p, least, [&](std::uint32_t number, double square) {
-        if (square < least || (square <= least && number < best)) {
-          least = square;
+      visit_bucket(bucket, p, minimum, [&](std::uint32_t number, double square) {
+        if (square < minimum || (square <= minimum && number < best)) {
+          minimum = square;
           best = number;
         }
       });

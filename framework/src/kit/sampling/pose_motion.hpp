@@ -57,10 +57,10 @@ class PoseMotion {
     return is_goal(state) || (ends_anywhere() && request_.goal.reached_at(state.position));
   }
 
-  double least(const State& from, const State& to) const {
+  double minimum(const State& from, const State& to) const {
     return cost_of(steering().least_length(from, to), from, to);
   }
-  double least(Node from, const State& to) const { return least(state(from), to); }
+  double minimum(Node from, const State& to) const { return minimum(state(from), to); }
   /// Infinite if it is more than `at_most`.
   double metres(const State& from, const State& to, double at_most = kInfinity) const {
     // The length of the horizontal path is at most that.
@@ -79,23 +79,24 @@ class PoseMotion {
       const double ground = (request_.goal.position - from.position).head<2>().norm();
       return std::abs(ground - request_.goal.loiter->radius) / steering().ground_per_air();
     }
-    double least_of_all = kInfinity;
+    double min_of_all = kInfinity;
     for (const State& goal : goals_) {
-      least_of_all = std::min(least_of_all, least(from, goal));
+      min_of_all = std::min(min_of_all, minimum(from, goal));
     }
-    return least_of_all;
+    return min_of_all;
   }
-  static double least_route() { return 0; }
+  static double min_route() { return 0; }
   /// True if no route is shorter than the shortest path from any start to any goal.
   bool ends_are_poses() const { return !ends_anywhere() && request_.wind.layers.size() <= 1; }
   /// Beyond this, a node is of no use while the best route costs `best`.
   double max_cost(double best) const {
-    const double most = steering().is_calm() ? request_.limits.max_route_length : kInfinity;
-    return settings_.bounded ? std::min(most, best) : most;
+    const double maximum = steering().is_calm() ? request_.limits.max_route_length : kInfinity;
+    return settings_.bounded ? std::min(maximum, best) : maximum;
   }
   bool is_short_enough(Node node, double cost) const {
-    const double most = request_.limits.max_route_length;
-    return most == kInfinity || (steering().is_calm() ? cost : length(route_to(node))) <= most;
+    const double maximum = request_.limits.max_route_length;
+    return maximum == kInfinity ||
+           (steering().is_calm() ? cost : length(route_to(node))) <= maximum;
   }
   double reach(double cost) const {
     const double slope = std::tan(std::max(steering().limits().climb, steering().limits().sink));
@@ -123,7 +124,7 @@ class PoseMotion {
   std::optional<State> steer(Node& from, const State& toward) const {
     double shortest = kInfinity;
     for (const std::uint32_t number : memory_.near) {
-      if (least(Node(number), toward) < shortest) {
+      if (minimum(Node(number), toward) < shortest) {
         if (const double its = metres(Node(number), toward, shortest); its < shortest) {
           shortest = its;
           from = Node(number);
@@ -183,11 +184,11 @@ class PoseMotion {
     return steering().is_calm() ? std::hypot(length, to.position.z() - from.position.z()) : length;
   }
   static double farthest(const std::vector<State>& states, const Vec3& from) {
-    double most = 0;
+    double maximum = 0;
     for (const State& state : states) {
-      most = std::max(most, (state.position - from).norm());
+      maximum = std::max(maximum, (state.position - from).norm());
     }
-    return most;
+    return maximum;
   }
   bool is_goal(const State& state) const {
     return std::any_of(goals_.begin(), goals_.end(),

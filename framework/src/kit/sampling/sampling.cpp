@@ -13,20 +13,20 @@ constexpr double kWithin = 1 - 1e-9;  ///< keeps a bent leg off its limit
 double horizontal(const Vec3& v) { return std::hypot(v.x(), v.y()); }
 
 /// Rotated about the vertical until its angle with `incoming` is at most `most`.
-Vec3 turned_level(const Vec3& incoming, const Vec3& way, double most) {
+Vec3 turned_level(const Vec3& incoming, const Vec3& way, double maximum) {
   const double run = horizontal(way);
-  if (turn_angle_horizontal(incoming, way) <= most) {
+  if (turn_angle_horizontal(incoming, way) <= maximum) {
     return way;
   }
   const double before = std::atan2(incoming.y(), incoming.x());
   const double turn = std::remainder(std::atan2(way.y(), way.x()) - before, 2 * kPi);
-  const double heading = before + std::copysign(most * kWithin, turn);
+  const double heading = before + std::copysign(maximum * kWithin, turn);
   return {run * std::cos(heading), run * std::sin(heading), way.z()};
 }
 
 /// Rotated in the plane of both until its angle with `incoming` is at most `most`.
-Vec3 turned_in_space(const Vec3& incoming, const Vec3& way, double most) {
-  if (turn_angle_in_space(incoming, way) <= most) {
+Vec3 turned_in_space(const Vec3& incoming, const Vec3& way, double maximum) {
+  if (turn_angle_in_space(incoming, way) <= maximum) {
     return way;
   }
   const Vec3 ahead = incoming.normalized();
@@ -34,12 +34,12 @@ Vec3 turned_in_space(const Vec3& incoming, const Vec3& way, double most) {
   if (across.squaredNorm() == 0) {
     return way;
   }
-  const double angle = most * kWithin;
+  const double angle = maximum * kWithin;
   return way.norm() * (std::cos(angle) * ahead + std::sin(angle) * across.normalized());
 }
 
-Vec3 levelled(const Vec3& way, double most) {
-  const double rise = horizontal(way) * std::tan(most) * kWithin;
+Vec3 levelled(const Vec3& way, double maximum) {
+  const double rise = horizontal(way) * std::tan(maximum) * kWithin;
   return {way.x(), way.y(), std::clamp(way.z(), -rise, rise)};
 }
 }  // namespace
@@ -50,13 +50,13 @@ Vec3 bent(const std::optional<Approach>& before, const Vec3& at, const Vec3& wan
   if (before) {
     const Vec3 incoming = at - before->from;
     way = turned_level(before->heading_at(at), way, limits.max_turn_horizontal);
-    double most = limits.max_turn_space;
+    double maximum = limits.max_turn_space;
     if (limits.min_turn_radius > 0) {
       const double leg = std::min({wanted.norm(), range, incoming.norm()});
-      most = std::min(most, 2 * std::atan(leg / (2 * limits.min_turn_radius)));
+      maximum = std::min(maximum, 2 * std::atan(leg / (2 * limits.min_turn_radius)));
     }
-    if (most < kPi && !incoming.isZero(0)) {
-      way = turned_in_space(incoming, way, most);
+    if (maximum < kPi && !incoming.isZero(0)) {
+      way = turned_in_space(incoming, way, maximum);
     }
   }
   return limits.max_slope() < kPi / 2 ? levelled(way, limits.max_slope()) : way;

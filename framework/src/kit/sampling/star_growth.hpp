@@ -33,7 +33,7 @@ class StarGrowth {
         set_(request.start.position, request.goal.position, box_),
         goals_(motion_.goals()),
         reached_(goals_.size(), false),
-        least_route_(motion_.least_route()),
+        min_route_(motion_.min_route()),
         max_nodes_(std::min<std::size_t>(request.budget.max_memory_bytes / Motion::kBytesPerNode,
                                          1U << 30)) {
     memory_.clear();
@@ -68,7 +68,7 @@ class StarGrowth {
     budget_ended_ =
         watch_.spent(expanded_, memory_.legs.size()) || memory_.legs.size() >= max_nodes_;
     return !budget_ended_ && expanded_ < settings_.max_iterations &&
-           best_ > least_route_ * (1 + 1e-9);
+           best_ > min_route_ * (1 + 1e-9);
   }
 
   /// SampleFree: a goal, or a state in the volume or in the informed set.
@@ -94,7 +94,7 @@ class StarGrowth {
     }
     const auto end = paths.begin() + std::ptrdiff_t(std::min(paths.size(), kMaxShots));
     std::partial_sort(paths.begin(), end, paths.end());
-    least_route_ = motion_.ends_are_poses() && !paths.empty() ? paths.front().first : 0;
+    min_route_ = motion_.ends_are_poses() && !paths.empty() ? paths.front().first : 0;
     for (auto path = paths.begin(); path != end; ++path) {
       const auto& [metres, ends] = *path;
       if (metres <= motion_.max_cost(best_) && motion_.joins(ends.first, goals_[ends.second])) {
@@ -164,7 +164,7 @@ class StarGrowth {
   void list_candidates(const State& x_new) {
     candidates_.clear();
     for (const std::uint32_t number : memory_.near) {
-      const double metres = motion_.least(Node(number), x_new);
+      const double metres = motion_.minimum(Node(number), x_new);
       candidates_.push_back({Node(number), metres, memory_.cost[number] + metres, Motion::kExact});
     }
   }
@@ -222,7 +222,7 @@ class StarGrowth {
         if (gains(candidate.metres)) {
           rewire(x_new, x_near);
         }
-      } else if (const State state = motion_.state(x_near); gains(motion_.least(x_new, state))) {
+      } else if (const State state = motion_.state(x_near); gains(motion_.minimum(x_new, state))) {
         const double at_most = std::min(
             settings_.range, memory_.cost[std::size_t(x_near)] - memory_.cost[std::size_t(x_new)]);
         if (const double metres = motion_.metres(x_new, state, at_most);
@@ -257,7 +257,7 @@ class StarGrowth {
     const double before = memory_.cost[std::size_t(node)];
     for (std::size_t g = 0; g < goals_.size(); ++g) {
       const double at_most = std::min(settings_.range, motion_.max_cost(best_) - before);
-      if (reached_[g] || motion_.least(node, goals_[g]) > at_most) {
+      if (reached_[g] || motion_.minimum(node, goals_[g]) > at_most) {
         continue;
       }
       const double metres = motion_.metres(node, goals_[g], at_most);
@@ -374,7 +374,7 @@ class StarGrowth {
   InformedSet set_;
   std::vector<State> goals_;
   std::vector<bool> reached_;  ///< the goals that are in the tree
-  double least_route_;         ///< lower bound of the cost of a route
+  double min_route_;           ///< lower bound of the cost of a route
   std::size_t max_nodes_;
   std::vector<Candidate> candidates_;
   bool goal_is_in_ = false;

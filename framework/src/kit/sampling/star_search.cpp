@@ -8,12 +8,12 @@
 namespace altiplan::kit {
 
 LegTree::Node nearest_of_near(const StarMemory& memory, const Vec3& p) {
-  double least = kInfinity;
+  double minimum = kInfinity;
   std::uint32_t best = 0;
   for (const std::uint32_t number : memory.near) {
     const double its = (memory.points.point(number) - p).squaredNorm();
-    if (its < least || (its <= least && number < best)) {
-      least = its;
+    if (its < minimum || (its <= minimum && number < best)) {
+      minimum = its;
       best = number;
     }
   }

@@ -41,7 +41,7 @@ class StraightMotion {
   std::vector<State> goals() const { return {request_.goal.position}; }
   bool is_end(const State& p) const { return request_.goal.reached_at(p); }
 
-  double least(Node from, const State& to) const {
+  double minimum(Node from, const State& to) const {
     return (memory_.points.point(std::size_t(from)) - to).norm();
   }
   double metres(Node from, const State& to, double = 0) const { return (to - state(from)).norm(); }
@@ -51,7 +51,7 @@ class StraightMotion {
   double to_go(const State& p) const {
     return std::max(0.0, (p - request_.goal.position).norm() - request_.goal.tolerance_m);
   }
-  double least_route() const {
+  double min_route() const {
     return std::max(
         0.0, (request_.goal.position - request_.start.position).norm() - request_.goal.tolerance_m);
   }

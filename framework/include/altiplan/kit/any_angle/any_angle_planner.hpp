@@ -3,23 +3,18 @@
 
 #include "altiplan/kit/any_angle/any_angle.hpp"
 #include "altiplan/kit/lattice/heading_search.hpp"
-#include "altiplan/params.hpp"
+#include "altiplan/kit/lattice/lattice_params.hpp"
 
 namespace altiplan::kit {
 
 /// Common parameters of the planners of straight legs between cells.
-struct AnyAngleParams {
+struct AnyAngleParams : LatticeParams {
   enum class Angles { printed, route_consistent, complete };
 
-  Vec3 cell_m{50, 50, 10};
   Angles angle_rule = Angles::complete;
-  int max_memory_mb = 4096;
 
   void describe(Fields& f) {
-    f("cell_m", cell_m)
-        .unit("m")
-        .at_least(0.001)
-        .doc("cell edge length on each axis; a layer with its own cells overrides it");
+    describe_cell(f);
     f("angle_rule", angle_rule,
       {{"printed", Angles::printed},
        {"route_consistent", Angles::route_consistent},
@@ -29,12 +24,8 @@ struct AnyAngleParams {
             "leg taken (printed, paper 003); for that leg, and again when its end is expanded "
             "(route_consistent); or the same and, if that finds nothing, an A* search over cell "
             "and heading, whose steps may touch edges (complete)");
-    f("max_memory_mb", max_memory_mb)
-        .unit("MB")
-        .at_least(1)
-        .doc("memory limit of the lattice; a larger one is refused before allocation");
+    describe_memory(f);
   }
-  std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
   AngleRule angles() const {
     return angle_rule == Angles::printed ? AngleRule::printed : AngleRule::route_consistent;
   }

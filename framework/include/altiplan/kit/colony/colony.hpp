@@ -11,8 +11,8 @@
 
 #include "altiplan/kit/colony/pheromone.hpp"
 #include "altiplan/kit/lattice/lattice.hpp"
+#include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/lattice/move_rules.hpp"
-#include "altiplan/params.hpp"
 #include "altiplan/planner.hpp"
 
 /// \file Common parts of ant colonies on the cells of a level. M. Dorigo, V. Maniezzo, A. Colorni:
@@ -20,8 +20,7 @@
 /// and Cybernetics B 26(1), 1996, doi:10.1109/3477.484436; as of paper 004.
 namespace altiplan::kit {
 
-struct ALTIPLAN_API ColonyParams {
-  Vec3 cell_m{50, 50, 10};
+struct ALTIPLAN_API ColonyParams : LatticeParams {
   int ants = 100;
   int iterations = 100;
   double deposit_q = 2000;
@@ -30,10 +29,8 @@ struct ALTIPLAN_API ColonyParams {
   double beta = 3;
   double evaporation = 0.6;
   AutoNumber max_length_m;
-  int max_memory_mb = 4096;
 
   void describe(Fields& f);
-  std::size_t max_bytes() const { return std::size_t(max_memory_mb) * 1024 * 1024; }
 };
 
 /// One bit per cell of a level, padded at both ends for the neighbours of the first and the last

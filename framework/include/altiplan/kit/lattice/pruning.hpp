@@ -143,7 +143,7 @@ inline constexpr DirectionMasks kNatural = natural_neighbours();
 
 /// The same among blocked cells, on any box-shaped cells: other steps are left out where a path
 /// around the cell is free that costs less, or the same with a last step that comes earlier in the
-/// order of NaturalSteps.
+/// order of astar's NaturalSteps.
 class SpaceSuccessors {
  public:
   static const SpaceSuccessors& of(CornerRule rule) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/lattice/lattice_search.hpp"
-#include "altiplan/params.hpp"
 
 namespace altiplan::kit {
 
@@ -48,10 +48,7 @@ struct SearchParams {
   }
 
   void describe_lattice(Fields& f) {
-    f("cell_m", search.cell_m)
-        .unit("m")
-        .at_least(0.001)
-        .doc("cell edge length on each axis; a layer with its own cells overrides it");
+    describe_cell(f, search.cell_m);
     f("neighbours", neighbours)
         .doc("neighbours of a cell: 26 (8 in level flight) or 6 (4 in level flight)")
         .range(6, 26);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The features of published airspace in JSON, whose format some of them tell.
+#include <algorithm>
+#include <map>
+
+#include "airspace_parts.hpp"
+#include "json_node.hpp"
+
+namespace altiplan::formats {
+namespace {
+
+using Json = nlohmann::json;
+using Format = Airspace::Format;
+
+bool has_any(const Json& object, std::initializer_list<const char*> keys) {
+  return object.is_object() && std::any_of(keys.begin(), keys.end(),
+                                           [&](const char* key) { return object.contains(key); });
+}
+
+std::optional<Format> format_of_feature(const Json& feature) {
+  static const Json kNone;
+  const auto part = [&](const char* key) -> const Json& {
+    return has_any(feature, {key}) ? feature[key] : kNone;
+  };
+  const Json& geometry = part("geometry");
+  const Json& properties = part("properties");
+  if (geometry.is_array() || has_any(feature, {"uomDimensions", "applicability"})) {
+    return Format::ed269;
+  }
+  if (has_any(geometry, {"layer", "extent"}) ||
+      has_any(properties, {"limitedApplicability", "restrictionConditions", "zoneAuthority"})) {
+    return Format::ed318;
+  }
+  if (has_any(properties, {"CEILING", "APT1_ICAO", "APT1_LAANC", "APT1_NAME"}) &&
+      has_any(properties, {"MAP_EFF", "APT1_ICAO", "APT1_LAANC", "APT1_NAME", "ARPT_COUNT"})) {
+    return Format::faa;
+  }
+  return std::nullopt;
+}
+
+/// Reads features as they are parsed, once one of them has told the format.
+class FeatureReader {
+ public:
+  void take(const std::string& key, Json& feature) {
+    const std::size_t n = counts_[key]++;
+    if (!format_ && is_list(key)) {
+      format_ = format_of_feature(feature);
+    }
+    if (format_ && is_list(key)) {
+      read(key, n, feature);
+      feature = Json(Json::value_t::discarded);
+    }
+  }
+
+  /// None if the document is no airspace.
+  std::optional<Airspace> finish(const Json& document) {
+    // Without marks of a format, but not GeoJSON either.
+    const bool is_list_of_zones =
+        document.is_object() && !document.contains("type") && counts_.contains("features");
+    if (!format_ && !is_list_of_zones && !counts_.contains("UASZoneList")) {
+      return std::nullopt;
+    }
+    format_ = format_.value_or(Format::ed269);
+    for (const auto& [key, list] : document.items()) {
+      for (std::size_t n = 0; is_list(key) && n < list.size(); ++n) {
+        if (!list[n].is_discarded()) {
+          read(key, n, list[n]);
+        }
+      }
+    }
+    airspace_.format = *format_;
+    airspace_.notes = doubts_.notes();
+    return std::move(airspace_);
+  }
+
+ private:
+  static bool is_list(const std::string& key) { return key == "features" || key == "UASZoneList"; }
+
+  void read(const std::string& key, std::size_t n, const Json& json) {
+    const JsonNode feature(json, key + "." + std::to_string(n));
+    if (!json.is_object()) {
+      feature.wrong("a feature");
+    }
+    read_json_feature(feature, *format_, airspace_, doubts_);
+  }
+
+  std::optional<Format> format_;
+  std::map<std::string, std::size_t> counts_;  ///< of the items of lists
+  Airspace airspace_;
+  Doubts doubts_;
+};
+}  // namespace
+
+std::optional<Airspace> read_airspace_json(const std::string& file, const std::string& text) {
+  FeatureReader reader;
+  const auto take = [&](const std::string& key, Json& item) {
+    try {
+      reader.take(key, item);
+    } catch (const Error& error) {
+      throw Error(file + ": " + error.what());
+    }
+  };
+  const Json document = parse_json(file, text, take);
+  try {
+    expect_wgs84(document);
+    return reader.finish(document);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
+}
+}  // namespace altiplan::formats

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "altiplan/error.hpp"
+#include "altiplan/formats/airspace.hpp"
+
+/// \file Common parts of the readers of airspace.
+namespace altiplan::formats {
+
+class JsonNode;
+
+inline constexpr double kFoot = 0.3048;
+inline constexpr double kNauticalMile = 1852;
+inline constexpr double kFlightLevel = 100 * kFoot;
+
+/// What had to be closed or skipped, and in which zones.
+class Doubts {
+ public:
+  void add(const std::string& what, const std::string& zone);
+  std::vector<std::string> notes() const;
+
+ private:
+  std::vector<std::pair<std::string, std::vector<std::string>>> found_;
+};
+
+/// An arc around a centre; the radius is known to lie between two values.
+struct OutlineArc {
+  Point2 centre;
+  double min_radius_m;
+  double max_radius_m;
+  double from_deg;        ///< bearing
+  double sweep_deg;       ///< positive clockwise
+  bool has_start = true;  ///< false: the corner before it is where it starts
+  bool has_end = true;
+  bool is_uncertain = false;  ///< it may run the other way round
+};
+using OutlinePart = std::variant<Point2, OutlineArc>;
+using Outline = std::vector<OutlinePart>;
+
+/// Where a position and bearing lead on the WGS 84 ellipsoid (Vincenty's direct formula), and the
+/// distance and bearing between two positions.
+Point2 geodesic_end(const Point2& from, double bearing_deg, double metres);
+struct GeodesicCourse {
+  double metres;
+  double bearing_deg;
+};
+GeodesicCourse geodesic_course(const Point2& from, const Point2& to);
+
+/// Each throws Error: unless it is a position, a radius up to 1000 km, a bearing.
+void expect_lonlat(const Point2& p);
+void expect_radius(double metres);
+void expect_bearing(double degrees);
+
+/// Polygons that cover the outline: one, or several if it meets itself, which is reported.
+std::vector<Polygon> cover_of(const Outline& outline, const std::string& zone, Doubts& doubts);
+/// True if the outline does not meet itself, apart from gaps between arcs and corners.
+bool is_simple(const Outline& outline);
+/// A circle around its disc, or within it.
+Ring circle_ring(const Point2& centre, double radius_m, bool within = false);
+/// Cuts holes out of the polygon as far as that is certain.
+void cut_holes(Polygon& polygon, const std::vector<Ring>& holes, const std::string& zone,
+               Doubts& doubts);
+/// Of an outline: chords that never reach beyond it.
+Ring ring_within(const Outline& outline);
+
+/// A limit as a file gives it.
+struct LimitText {
+  std::optional<double> value;
+  std::string unit;       ///< M, FT or FL
+  std::string reference;  ///< AGL, SFC, GND, AMSL, MSL, STD, WGS84, W84
+  std::string found;      ///< for the note, if the limit is unknown
+};
+ZoneLimit lower_limit(const LimitText& text, const std::string& zone, Doubts& doubts);
+ZoneLimit upper_limit(const LimitText& text, const std::string& zone, Doubts& doubts);
+/// Removes limits that contradict each other.
+void settle(ZoneVolume& volume, const std::string& zone, Doubts& doubts);
+
+/// The restriction of a class of airspace, or of a kind of zone; keep_out, and reported, if it is
+/// unknown.
+Restriction restriction_of(const std::string& type, const std::string& zone, Doubts& doubts);
+
+/// Bit of a day ("MON"), all of them for "ANY"; none if it is no such word.
+std::optional<unsigned> day_bits(std::string_view name);
+/// Seconds since midnight of "06:00Z"; none if it is no time in UTC.
+std::optional<double> clock_time(std::string_view text);
+/// The event of "SR", "SS", "BMCT", "EECT".
+std::optional<DailyHours::Event> sun_event(std::string_view name);
+/// Start or end of a period; infinite, and reported, if it is unreadable.
+double period_start(const std::string& text, const std::string& zone, Doubts& doubts);
+double period_end(const std::string& text, const std::string& zone, Doubts& doubts);
+/// Removes the ends of a period that ends before it starts.
+void settle(ZonePeriod& period, const std::string& zone, Doubts& doubts);
+
+std::string upper_case(std::string_view text);
+/// The text without control characters and broken UTF-8.
+std::string printable(std::string_view text);
+
+bool is_openair(const std::string& text);
+Airspace read_openair(const std::string& file, const std::string& text);
+bool is_aixm(const std::string& text);
+Airspace read_aixm(const std::string& file, const std::string& text);
+/// None if it is JSON of another kind.
+std::optional<Airspace> read_airspace_json(const std::string& file, const std::string& text);
+/// Adds the feature's zone.
+void read_json_feature(const JsonNode& feature, Airspace::Format format, Airspace& to,
+                       Doubts& doubts);
+}  // namespace altiplan::formats

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/formats/mission_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/geometry.hpp"
+#include "mission_parts.hpp"
+#include "text_file.hpp"
+
+namespace altiplan::formats {
+namespace {
+
+constexpr double kMaxAltitude = 100'000;
+constexpr double kMaxRadius = 100'000;  // of a circle
+constexpr double kMaxTurns = 1000;      // more than an autopilot stores
+/// NAV_SPLINE_WAYPOINT, reached on a curve through its neighbours that autopilots lay differently.
+constexpr int kSpline = 82;
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+/// The item kind of a MAV_CMD, none for a command that is no position on the route. DO_LAND_START
+/// (189) carries a position, but marks where landing begins and is not flown to.
+std::optional<MissionItem::Kind> kind_of(int command) {
+  using Kind = MissionItem::Kind;
+  switch (command) {
+    case 16:  // NAV_WAYPOINT
+    case kSpline:
+      return Kind::waypoint;
+    case 17:  // NAV_LOITER_UNLIM
+    case 18:  // NAV_LOITER_TURNS
+    case 19:  // NAV_LOITER_TIME
+    case 31:  // NAV_LOITER_TO_ALT
+      return Kind::loiter;
+    case 22:  // NAV_TAKEOFF
+    case 84:  // NAV_VTOL_TAKEOFF
+      return Kind::takeoff;
+    case 21:  // NAV_LAND
+    case 85:  // NAV_VTOL_LAND
+      return Kind::land;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// True for a command that flies the vehicle somewhere, but to no position that it gives.
+bool moves_vehicle(int command) {
+  switch (command) {
+    case MissionMove::kReturn:
+    case 23:   // NAV_LAND_LOCAL
+    case 24:   // NAV_TAKEOFF_LOCAL
+    case 25:   // NAV_FOLLOW
+    case 30:   // NAV_CONTINUE_AND_CHANGE_ALT
+    case 32:   // DO_FOLLOW
+    case 33:   // DO_FOLLOW_REPOSITION
+    case 34:   // DO_ORBIT
+    case 35:   // DO_FIGURE_EIGHT
+    case 36:   // NAV_ARC_WAYPOINT
+    case 81:   // NAV_PATHPLANNING
+    case 83:   // NAV_ALTITUDE_WAIT
+    case 92:   // NAV_GUIDED_ENABLE
+    case 94:   // NAV_PAYLOAD_PLACE
+    case 176:  // DO_SET_MODE
+    case 177:  // DO_JUMP
+    case 192:  // DO_REPOSITION
+    case 601:  // DO_JUMP_TAG
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// The circle of a loiter's parameters as MAVLink numbers them; radii are positive clockwise.
+std::optional<MissionCircle> circle_of(int command, const std::array<double, 4>& params) {
+  using Until = MissionCircle::Until;
+  const bool is_to_altitude = command == 31;
+  const double radius = is_to_altitude ? params[1] : params[2];
+  const bool is_left_by_tangent = params[3] == 1;  // "xtrack": from the location of the exit
+  const bool is_circle = command == 17 || (command == 18 && params[0] >= 0 && is_left_by_tangent) ||
+                         (is_to_altitude && is_left_by_tangent);
+  if (!is_circle || !(std::abs(radius) > 0 && std::abs(radius) <= kMaxRadius)) {
+    return std::nullopt;
+  }
+  MissionCircle circle;
+  circle.until = command == 17 ? Until::forever : is_to_altitude ? Until::altitude : Until::turns;
+  circle.radius_m = std::abs(radius);
+  circle.sense = radius > 0 ? -1 : 1;
+  circle.turns = command == 18 ? std::min(params[0], kMaxTurns) : 0;
+  return circle;
+}
+
+MissionFile read_json_mission(const std::string& file, const std::string& text) {
+  const nlohmann::json json = parse_json(file, text);
+  try {
+    return json.is_object() && json.value("type", nlohmann::json()) == "FeatureCollection"
+               ? read_geojson_route(json)
+               : read_qgc_plan(json);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
+}
+
+/// Seconds spent at a waypoint, or in a loiter of a given time.
+double hold_of(const CommandList::Command& command) {
+  constexpr int kForever = 17;
+  const bool holds = (command.number == 16 || command.number == 19) && command.params[0] > 0;
+  return command.number == kForever ? kInfinity : holds ? command.params[0] : 0;
+}
+
+/// The radius that a loiter's parameters give; 0: none, or beyond kMaxRadius.
+double loiter_radius_of(const CommandList::Command& command) {
+  const double radius = std::abs(command.params[command.number == 31 ? 1 : 2]);
+  return radius > 0 && radius <= kMaxRadius ? radius : 0;
+}
+
+/// Full circles of a loiter, which take time that its speed tells.
+double turns_of(const CommandList::Command& command) {
+  return command.number == 18 && command.params[0] > 0 ? std::min(command.params[0], kMaxTurns) : 0;
+}
+
+bool is_nowhere(double lon, double lat) {
+  return (lon == 0 && lat == 0) || (std::isnan(lon) && std::isnan(lat));
+}
+}  // namespace
+
+void expect_position(double lon, double lat) {
+  if (std::isfinite(lon) && std::isfinite(lat) && std::abs(lon) <= 180 && std::abs(lat) <= 90) {
+    return;
+  }
+  const bool swapped = std::abs(lat) > 90 && std::abs(lat) <= 180 && std::abs(lon) <= 90;
+  throw Error("expected longitude in [-180, 180] and latitude in [-90, 90], found longitude " +
+              number_text(lon) + " and latitude " + number_text(lat) +
+              (swapped ? ": are the axes swapped?" : ""));
+}
+
+void expect_altitude(double altitude_m) {
+  if (!(std::abs(altitude_m) <= kMaxAltitude)) {
+    throw Error("expected an altitude within 100 km of its reference, found " +
+                number_text(altitude_m) + " m");
+  }
+}
+
+AltitudeFrame frame_of(int mav_frame) {
+  switch (mav_frame) {
+    case 0:  // GLOBAL, and its integer form
+    case 5:
+      return AltitudeFrame::sea;
+    case 3:  // GLOBAL_RELATIVE_ALT
+    case 6:
+      return AltitudeFrame::home;
+    case 10:  // GLOBAL_TERRAIN_ALT
+    case 11:
+      return AltitudeFrame::ground;
+    default:
+      throw Error("expected the frame 0 (sea level), 3 (relative to home) or 10 (ground), found " +
+                  std::to_string(mav_frame));
+  }
+}
+
+void check_volume(ZoneVolume& volume) {
+  if (volume.polygon.outline.empty()) {
+    expect_position(volume.centre[0], volume.centre[1]);
+    if (!(volume.radius_m > 0 && volume.radius_m <= 1e7)) {
+      throw Error("expected a radius above 0 m, found " + number_text(volume.radius_m));
+    }
+    return;
+  }
+  volume.polygon.outline = without_repeats(volume.polygon.outline);
+  for (Ring& hole : volume.polygon.holes) {
+    hole = without_repeats(hole);
+  }
+  if (const std::string problem = polygon_problem(volume.polygon); !problem.empty()) {
+    throw Error(problem);
+  }
+}
+
+MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kind) const {
+  MissionPoint at{command.lon, command.lat, command.altitude_m, frame_of(command.frame)};
+  if (is_nowhere(at.lon, at.lat)) {
+    // Autopilots take off, loiter and land at the vehicle's current position.
+    if (kind == MissionItem::Kind::waypoint) {
+      throw Error("a waypoint needs a position, found longitude " + number_text(at.lon) +
+                  " and latitude " + number_text(at.lat));
+    }
+    const MissionPoint* here = !mission_.items.empty() ? &mission_.items.back().at
+                               : mission_.home         ? &*mission_.home
+                                                       : nullptr;
+    if (here == nullptr) {
+      throw Error("begins at the vehicle's position, but the file has no home position");
+    }
+    at.lon = here->lon;
+    at.lat = here->lat;
+  }
+  expect_position(at.lon, at.lat);
+  expect_altitude(at.altitude_m);
+  return at;
+}
+
+bool CommandList::take(const Command& command) {
+  constexpr int kDelay = 93;
+  constexpr int kConditionDelay = 112;
+  constexpr int kChangeSpeed = 178;
+  const auto& params = command.params;
+  if (command.number == kChangeSpeed) {
+    constexpr double kDefault = -2;
+    constexpr double kFastest = 1000;
+    const bool is_speed = params[0] == 0 || params[0] == 1;  // through the air, over the ground
+    if (is_speed && (params[1] == kDefault || (params[1] > 0 && params[1] <= kFastest))) {
+      speed_mps_ = std::max(params[1], 0.0);
+    }
+    return true;
+  }
+  if (command.number == kDelay || command.number == kConditionDelay) {
+    const double hold = params[0] >= 0 ? params[0] : kInfinity;  // until a time of day
+    (mission_.items.empty() ? hold_s_ : mission_.items.back().hold_s) += hold;
+    return true;
+  }
+  return false;
+}
+
+void CommandList::add(const Command& command) {
+  if (take(command)) {
+    return;
+  }
+  const auto kind = kind_of(command.number);
+  if (!kind) {
+    if (moves_vehicle(command.number)) {
+      mission_.moves.push_back(
+          {command.number, command.place, command.item, mission_.items.size()});
+      ++moves_;
+      moves_numbers_.insert(command.number);
+    } else {
+      ++skipped_;
+      skipped_numbers_.insert(command.number);
+    }
+    return;
+  }
+  const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
+  MissionItem item{*kind, place_of(command, *kind), acceptance, command.place,
+                   circle_of(command.number, command.params)};
+  item.speed_mps = speed_mps_;
+  item.hold_s = hold_of(command) + std::exchange(hold_s_, 0.0);
+  item.number = command.item;
+  if (*kind == MissionItem::Kind::loiter) {
+    item.loiter_m = loiter_radius_of(command);
+    item.turns = turns_of(command);
+  }
+  mission_.items.push_back(std::move(item));
+  if (command.number == kSpline) {
+    mission_.moves.push_back({kSpline, command.place, command.item, mission_.items.size()});
+  }
+}
+
+void CommandList::skip_complex(const std::string& place) {
+  ++complex_;
+  mission_.moves.push_back({0, place, 0, mission_.items.size()});
+}
+
+void CommandList::finish() {
+  const auto note = [&](std::size_t count, const char* what, const std::set<int>& numbers) {
+    std::string list;
+    for (const int number : numbers) {
+      list += (list.empty() ? "" : ", ") + std::to_string(number);
+    }
+    if (count > 0) {
+      mission_.notes.push_back(std::to_string(count) + what + " (" + list + ")");
+    }
+  };
+  note(moves_, " commands that fly to no position of their own", moves_numbers_);
+  note(skipped_, " commands that fly nowhere skipped", skipped_numbers_);
+  if (taken_ > 0) {
+    mission_.notes.push_back(std::to_string(taken_) + " commands taken out of survey items");
+  }
+  if (complex_ > 0) {
+    mission_.notes.push_back(std::to_string(complex_) +
+                             " complex items skipped: they contain no waypoints");
+  }
+}
+
+bool is_mission_file(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  return ending == ".plan" || ending == ".waypoints" || ending == ".txt" || ending == ".kml";
+}
+
+MissionFile read_mission(const std::string& file) { return read_mission(file, read_file(file)); }
+
+MissionFile read_mission(const std::string& file, const std::string& text) {
+  const std::string mark = "\xEF\xBB\xBF";  // some editors put it before UTF-8
+  const std::string body = text.starts_with(mark) ? text.substr(mark.size()) : text;
+  const std::size_t first = body.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) {
+    throw Error(file + ": is empty, expected a mission (.plan, QGC WPL 110, KML, GPX, GeoJSON)");
+  }
+  if (body[first] == '{' || body[first] == '[') {
+    return read_json_mission(file, body);
+  }
+  if (body[first] == '<') {
+    return read_kml_or_gpx(file, body);
+  }
+  return read_waypoints(file, body);
+}
+}  // namespace altiplan::formats

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <vector>
+
+#include "xml_parts.hpp"
+
+namespace altiplan::formats {
+namespace {
+
+/// A position of a KML file; the altitude is optional.
+struct Coordinate {
+  Point2 lonlat{0, 0};
+  double altitude_m = 0;
+  bool has_altitude = false;
+};
+
+Coordinate coordinate_of(std::string_view tuple) {
+  double parts[3] = {0, 0, 0};
+  std::size_t count = 0;
+  for (std::size_t at = 0; at <= tuple.size();) {
+    const std::size_t comma = std::min(tuple.find(',', at), tuple.size());
+    if (count == 3) {
+      throw Error("expected longitude,latitude[,altitude], found '" +
+                  std::string(tuple.substr(0, 60)) + "'");
+    }
+    parts[count++] = number_of(tuple.substr(at, comma - at));
+    at = comma + 1;
+  }
+  if (count < 2) {
+    throw Error("expected longitude,latitude[,altitude], found '" +
+                std::string(tuple.substr(0, 60)) + "'");
+  }
+  expect_position(parts[0], parts[1]);
+  expect_altitude(parts[2]);
+  return {{parts[0], parts[1]}, parts[2], count == 3};
+}
+
+std::vector<Coordinate> coordinates_of(const pugi::xml_node& geometry) {
+  const pugi::xml_node node = child(geometry, "coordinates");
+  if (!node) {
+    throw Error("the element 'coordinates' is missing");
+  }
+  const std::string_view text = node.text().get();
+  std::vector<Coordinate> all;
+  constexpr const char* kSpace = " \t\r\n";
+  for (std::size_t at = text.find_first_not_of(kSpace); at != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kSpace, at), text.size());
+    all.push_back(coordinate_of(text.substr(at, end - at)));
+    at = text.find_first_not_of(kSpace, end);
+  }
+  return all;
+}
+
+std::string_view altitude_mode(const pugi::xml_node& geometry) {
+  const std::string_view mode = text_of(geometry, "altitudeMode");
+  if (mode.empty()) {
+    return "clampToGround";  // KML's default
+  }
+  if (mode != "absolute" && mode != "relativeToGround" && mode != "clampToGround") {
+    throw Error("expected the altitudeMode absolute, relativeToGround or clampToGround, found '" +
+                std::string(mode.substr(0, 40)) + "'");
+  }
+  return mode;
+}
+
+/// Data of a Placemark apart from its geometry: its name, and our own limits of a zone.
+struct Placemark {
+  std::string name;
+  std::map<std::string, std::string, std::less<>> data;
+
+  explicit Placemark(pugi::xml_node geometry) {
+    while (geometry && local_name(geometry) != "Placemark") {
+      geometry = geometry.parent();
+    }
+    name = text_of(geometry, "name");
+    for (const pugi::xml_node& entry : child(geometry, "ExtendedData").children()) {
+      if (local_name(entry) == "Data") {
+        data[entry.attribute("name").value()] = text_of(entry, "value");
+      }
+    }
+  }
+  std::optional<double> metres(std::string_view key) const {
+    const auto found = data.find(key);
+    return found == data.end() ? std::nullopt : std::optional(number_of(found->second));
+  }
+};
+
+/// Content of a KML file: routes as lines or points, zones as polygons.
+class KmlReader {
+ public:
+  explicit KmlReader(MissionFile& mission) : mission_(mission) {}
+
+  /// True if the content of the element has been read.
+  bool take(const pugi::xml_node& node) {
+    const std::string_view name = local_name(node);
+    if (name == "Polygon") {
+      add_polygon(node);
+    } else if (name == "LineString") {
+      ++lines_;
+      add_points(node, line_);
+    } else if (name == "Point") {
+      add_points(node, points_);
+    } else {
+      links_ += name == "NetworkLink";
+      return false;
+    }
+    return true;
+  }
+
+  void finish() {
+    if (lines_ > 1) {
+      mission_.route_problem =
+          "expected one LineString as the route, found " + std::to_string(lines_);
+    } else if (const Points& route = lines_ > 0 ? line_ : points_; route.without_height) {
+      mission_.route_problem =
+          "a route needs heights: altitudeMode absolute or relativeToGround, and three numbers per "
+          "point";
+    }
+    mission_.items = lines_ > 0 ? std::move(line_.items) : std::move(points_.items);
+    if (lines_ > 0 && !points_.items.empty()) {
+      mission_.notes.push_back(std::to_string(points_.items.size()) +
+                               " points beside the LineString skipped");
+    }
+    if (flat_ > 0) {
+      mission_.notes.push_back(std::to_string(flat_) +
+                               " polygons without altitude limits: they apply at every altitude");
+    }
+    if (links_ > 0) {
+      mission_.notes.push_back(std::to_string(links_) + " network links not followed");
+    }
+  }
+
+ private:
+  struct Points {
+    std::vector<MissionItem> items;
+    bool without_height = false;
+  };
+
+  static void add_points(const pugi::xml_node& geometry, Points& points) {
+    const std::string_view mode = altitude_mode(geometry);
+    const AltitudeFrame frame =
+        mode == "relativeToGround" ? AltitudeFrame::ground : AltitudeFrame::sea;
+    for (const Coordinate& c : coordinates_of(geometry)) {
+      points.without_height |= mode == "clampToGround" || !c.has_altitude;
+      points.items.push_back({MissionItem::Kind::waypoint,
+                              {c.lonlat[0], c.lonlat[1], c.altitude_m, frame},
+                              0,
+                              "point " + std::to_string(points.items.size() + 1)});
+    }
+  }
+
+  static Ring ring_of(const pugi::xml_node& boundary, std::vector<double>& heights) {
+    const std::vector<Coordinate> corners = coordinates_of(child(boundary, "LinearRing"));
+    if (!corners.empty() && corners.front().lonlat != corners.back().lonlat) {
+      throw Error("a ring must end where it starts");
+    }
+    Ring ring;
+    for (const Coordinate& c : corners) {
+      ring.push_back(c.lonlat);
+      heights.push_back(c.altitude_m);
+    }
+    return ring;
+  }
+
+  /// An extruded polygon above sea level extends up to its corners; others apply at every height.
+  void add_polygon(const pugi::xml_node& node) {
+    const Placemark placemark(node);
+    Zone zone;
+    zone.name = placemark.name;
+    ZoneVolume volume;
+    std::vector<double> heights;
+    bool has_outline = false;
+    for (const pugi::xml_node& boundary : node.children()) {
+      if (local_name(boundary) == "outerBoundaryIs") {
+        if (has_outline) {
+          throw Error("a Polygon has one outerBoundaryIs");
+        }
+        has_outline = true;
+        volume.polygon.outline = ring_of(boundary, heights);
+      } else if (local_name(boundary) == "innerBoundaryIs") {
+        volume.polygon.holes.push_back(ring_of(boundary, heights));
+      }
+    }
+    if (!has_outline) {
+      throw Error("the Polygon has no outerBoundaryIs");
+    }
+    if (is_flat(volume.polygon)) {
+      mission_.flat.push_back(zone.name.empty() ? "a Polygon without a name" : zone.name);
+      return;
+    }
+    volume.lower = ZoneLimit::sea(placemark.metres("floor_m"));
+    volume.upper = ZoneLimit::sea(placemark.metres("ceiling_m"));
+    const bool extruded = text_of(node, "extrude") == "1" || text_of(node, "extrude") == "true";
+    const auto role = placemark.data.find("role");
+    zone.restriction = role == placemark.data.end() ? Restriction::unspecified
+                       : role->second == "keep_in"  ? Restriction::keep_in
+                                                    : Restriction::keep_out;
+    if (role != placemark.data.end()) {
+      if (role->second != "keep_in" && role->second != "keep_out") {
+        throw Error("expected the role keep_in or keep_out, found '" + role->second + "'");
+      }
+    } else if (extruded && altitude_mode(node) == "absolute") {
+      const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+      if (*high - *low > 0.01) {
+        throw Error("the polygon's corners have different altitudes: a zone has one ceiling");
+      }
+      volume.upper = ZoneLimit::sea(*high);
+    }
+    flat_ += volume.lower == ZoneLimit{} && volume.upper == ZoneLimit{};
+    check_volume(volume);
+    zone.volumes.push_back(std::move(volume));
+    mission_.zones.push_back(std::move(zone));
+  }
+
+  MissionFile& mission_;
+  Points line_;
+  Points points_;
+  std::size_t lines_ = 0;
+  std::size_t flat_ = 0;
+  std::size_t links_ = 0;
+};
+}  // namespace
+
+MissionFile read_kml(const pugi::xml_node& root, const std::string& file, const std::string& text) {
+  MissionFile mission;
+  mission.format = MissionFile::Format::kml;
+  read_elements<KmlReader>(mission, root, file, text);
+  return mission;
+}
+}  // namespace altiplan::formats
