@@ -10,9 +10,7 @@
 namespace altiplan::python {
 namespace {
 
-std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string dumped(const Json& json) { return host::json_text(json); }
 
 void add_metrics(py::module_& module) {
   auto metrics = record_class<Metrics>(

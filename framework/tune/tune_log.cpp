@@ -40,7 +40,7 @@ std::string line_of(const RunId& id, const std::string& parameters, const Scored
                            run.outcome,
                            run.value ? host::Json(*run.value) : host::Json(),
                            run.message};
-  const std::string text = json.dump(-1, ' ', false, host::Json::error_handler_t::replace);
+  const std::string text = host::json_text(json);
   return text + " " + check_sum(text) + "\n";
 }
 
@@ -77,7 +77,7 @@ std::string differences(const host::Json& before, const host::Json& now) {
     } else if (key == "plugins" || key == "program" || key == "altiplan") {
       what = key == "plugins" ? "the build of a plugin" : "the build of the program";
     } else if (is.is_primitive()) {
-      what += " (" + was.dump() + " before, " + is.dump() + " now)";
+      what += " (" + host::exact_json_text(was) + " before, " + host::exact_json_text(is) + " now)";
     }
     text += (text.empty() ? "" : "; ") + what;
   }
@@ -134,7 +134,7 @@ TuneLog::TuneLog(fs::path folder, const host::Json& settings, bool fresh)
       fs::remove(folder_ / ours, error);
     }
   } else if (host::is_there(file_)) {  // otherwise no run can be lost
-    const host::Json before = host::Json::parse(text_of(described), nullptr, false);
+    const host::Json before = host::json_or_discarded(text_of(described));
     if (!before.is_object()) {
       refuse(folder_, "contains a damaged settings.json: give another folder, or --fresh");
     }
@@ -156,7 +156,7 @@ void TuneLog::read() {
     begin = end + 1;
     const bool is_whole =
         space != std::string::npos && line.substr(space + 1) == check_sum(line.substr(0, space));
-    const host::Json json = is_whole ? host::Json::parse(line.substr(0, space), nullptr, false)
+    const host::Json json = is_whole ? host::json_or_discarded(line.substr(0, space))
                                      : host::Json(host::Json::value_t::null);
     if (!json.is_array() || json.size() != 6) {
       ++damaged_;

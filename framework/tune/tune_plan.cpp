@@ -81,7 +81,7 @@ std::vector<study::Variant> scenarios_of(const std::string& entry, const std::st
 
 /// A canonical form, equal for two names of the same scenario.
 std::string identity(const fs::path& file, const std::vector<std::string>& set) {
-  return fs::weakly_canonical(file).string() + " " + host::Json(set).dump();
+  return fs::weakly_canonical(file).string() + " " + host::exact_json_text(set);
 }
 
 /// Fills the plan's scenarios.
@@ -150,7 +150,7 @@ host::Json make_tuner(TunePlan& plan) {
   host::Json json = {{"name", request.tuner},
                      {"build", plan.config.registry->offering("tuner", request.tuner)->build}};
   for (const BoundField& field : report.fields) {
-    json["parameters"][field.spec.name] = host::Json::parse(field.value_json);
+    json["parameters"][field.spec.name] = host::parse_json(field.value_json);
   }
   return json;
 }

@@ -155,11 +155,11 @@ host::Json summary_json(const TunePlan& plan, const Tuning& tuning, const TuneSu
                      {"score_as_it_is", score(tuning.as_it_is().score)},
                      {"score_tuned", score(tuning.tuned().score)}};
   for (std::size_t p = 0; p < plan.parameters.size(); ++p) {
-    const host::Json before = host::Json::parse(plan.parameters[p].as_it_is, nullptr, false);
+    const host::Json before = host::json_or_discarded(plan.parameters[p].as_it_is);
     json["parameters"][plan.parameters[p].over.key] = {
         {"as_it_is", before.is_discarded() ? host::Json() : before},
         {"tuned", tuning.best == 0 ? (before.is_discarded() ? host::Json() : before)
-                                   : host::Json::parse(value_of(tuning.tuned().assignments[p]))}};
+                                   : host::parse_json(value_of(tuning.tuned().assignments[p]))}};
   }
   json["tuned_on"] = json_of(summary.tuned_on);
   json["held_back"] = summary.held_back.scenarios > 0 ? json_of(summary.held_back) : host::Json();

@@ -123,7 +123,7 @@ void expect_fitting(const OverEntry& entry, const FieldSpec& spec) {
   }
   const bool below = spec.above ? entry.min <= spec.min : entry.min < spec.min;
   if (below || entry.max > spec.max) {
-    const auto text = [](double number) { return host::Json(number).dump(); };
+    const auto text = [](double number) { return host::exact_json_text(number); };
     const std::string low =
         std::isfinite(spec.min) ? (spec.above ? "more than " : "at least ") + text(spec.min) : "";
     const std::string high = std::isfinite(spec.max) ? "at most " + text(spec.max) : "";
@@ -135,7 +135,7 @@ void expect_fitting(const OverEntry& entry, const FieldSpec& spec) {
   if (spec.type == FieldType::integer && (std::ceil(entry.min) > std::floor(entry.max) ||
                                           entry.min < -kMaxWhole || entry.max > kMaxWhole)) {
     refuse(entry, "takes whole numbers, of which the range has none or too many: " +
-                      host::Json(entry.min).dump() + " to " + host::Json(entry.max).dump());
+                      host::exact_json_text(entry.min) + " to " + host::exact_json_text(entry.max));
   }
 }
 
@@ -249,7 +249,7 @@ std::vector<OverEntry> read_over(const std::vector<std::string>& options) {
 }
 
 std::string TunedParameter::shown() const {
-  const host::Json value = host::Json::parse(as_it_is, nullptr, false);
+  const host::Json value = host::json_or_discarded(as_it_is);
   return value.is_string() ? value.get<std::string>() : as_it_is;
 }
 
@@ -273,7 +273,7 @@ std::string TunedParameter::value(double number) const {
     const double whole = std::clamp(std::round(raw), std::ceil(over.min), std::floor(over.max));
     return std::to_string(std::int64_t(whole));
   }
-  return host::Json(std::clamp(raw, over.min, over.max)).dump();
+  return host::exact_json_text(std::clamp(raw, over.min, over.max));
 }
 
 std::vector<TunedParameter> find_parameters(const host::Config& config,

@@ -34,7 +34,7 @@ std::string number(double value) {
 }
 
 /// With all digits, so that different numbers never print alike.
-std::string exact(double value) { return host::Json(value).dump(); }
+std::string exact(double value) { return host::exact_json_text(value); }
 
 const char* name(study::MetricChange::Verdict verdict) {
   constexpr const char* kNames[] = {"same",  "within tolerance", "better",

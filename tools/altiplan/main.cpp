@@ -58,7 +58,8 @@ void add_overrides(App& command, host::Overrides& overrides) {
 }
 
 Check number_from(double low, double high) {
-  const std::string range = "from " + host::Json(low).dump() + " to " + host::Json(high).dump();
+  const std::string range =
+      "from " + host::exact_json_text(low) + " to " + host::exact_json_text(high);
   return Check(
       [low, high, range](const std::string& text) {
         double value = 0;

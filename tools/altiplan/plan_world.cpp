@@ -24,7 +24,7 @@ constexpr std::string_view kWorld = "the world of --terrain";
 
 /// Quoted, absolute; JSON's strings are YAML's.
 std::string path_text(const std::string& file) {
-  return Json(std::filesystem::absolute(file).lexically_normal().string()).dump();
+  return host::exact_json_text(std::filesystem::absolute(file).lexically_normal().string());
 }
 
 std::string name_of(const std::string& file) {
@@ -39,29 +39,30 @@ bool has_fence(const formats::MissionFile& mission) {
 }
 
 std::string point_text(const char* key, const formats::MissionItem& item) {
-  return std::string(key) + ": {at_lonlat: [" + Json(item.at.lon).dump() + ", " +
-         Json(item.at.lat).dump() + ", 0]}\n";
+  return std::string(key) + ": {at_lonlat: [" + host::exact_json_text(item.at.lon) + ", " +
+         host::exact_json_text(item.at.lat) + ", 0]}\n";
 }
 
 /// The scenario that the options describe.
 std::string world_text(const PlanCheck& plan, const formats::MissionFile& mission) {
   // A void is closed: whatever flies over it flies into the ground.
-  const std::string voids =
-      plan.fills_voids ? "voids: neighbours" : "voids: fill_m, fill_m: " + Json(kClosed).dump();
+  const std::string voids = plan.fills_voids
+                                ? "voids: neighbours"
+                                : "voids: fill_m, fill_m: " + host::exact_json_text(kClosed);
   std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
-                     (plan.crs.empty() ? "" : ", crs: " + Json(plan.crs).dump()) + ", " + voids +
-                     "}\n";
+                     (plan.crs.empty() ? "" : ", crs: " + host::exact_json_text(plan.crs)) + ", " +
+                     voids + "}\n";
   std::set<std::string> ids{"terrain"};
   const auto add_zones = [&](const std::string& file, std::string name, const std::string& more) {
     while (!ids.insert(name).second) {
       name += "'";  // of another folder
     }
-    text +=
-        "  - zones: {file: " + path_text(file) + more + "}\n    id: " + Json(name).dump() + "\n";
+    text += "  - zones: {file: " + path_text(file) + more +
+            "}\n    id: " + host::exact_json_text(name) + "\n";
   };
   for (const std::string& file : plan.airspace) {
     add_zones(file, name_of(file),
-              ", horizon_s: " + Json(flown_s(plan, mission)).dump() +
+              ", horizon_s: " + host::exact_json_text(flown_s(plan, mission)) +
                   (plan.has_permission ? ", ask: skip" : ""));
   }
   if (has_fence(mission)) {
@@ -69,16 +70,16 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
   }
   // The ground and the zones alone bound a mission.
   text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";
-  text += "vehicle: {radius_m: " + Json(plan.radius_m).dump() + "}\n";
+  text += "vehicle: {radius_m: " + host::exact_json_text(plan.radius_m) + "}\n";
   // Heights are the mission's own; the judge is told.
   text += point_text("start", mission.items.front()) + point_text("goal", mission.items.back());
   if (plan.start_time) {
-    text += "start_time: " + Json(*plan.start_time).dump() + "\n";
+    text += "start_time: " + host::exact_json_text(*plan.start_time) + "\n";
   }
   std::string constraints;
   const auto add = [&](const char* words, const std::optional<double>& metres) {
     if (metres) {
-      constraints += std::string("  - ") + words + ": " + Json(*metres).dump() + "}\n";
+      constraints += std::string("  - ") + words + ": " + host::exact_json_text(*metres) + "}\n";
     }
   };
   add("ground_clearance: {min_m", plan.min_above_ground_m);

@@ -80,7 +80,7 @@ int explain_as_json(const host::Config& config, const std::vector<host::Explaine
   host::Json parameters = host::Json::array();
   for (const host::Explained& entry : all) {
     parameters.push_back({{"key", entry.key},
-                          {"value", host::Json::parse(entry.value_json)},
+                          {"value", host::parse_json(entry.value_json)},
                           {"unit", entry.unit},
                           {"from", entry.from}});
   }

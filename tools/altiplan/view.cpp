@@ -46,7 +46,8 @@ std::string contents(const host::Json& scene) {
   }
   std::string text = count(routes, "route") + ", " + count(flights, "flight");
   if (const host::Json& ground = scene.at("ground"); !ground.is_null()) {
-    text += ", ground " + ground.at("nx").dump() + " x " + ground.at("ny").dump();
+    text += ", ground " + host::exact_json_text(ground.at("nx")) + " x " +
+            host::exact_json_text(ground.at("ny"));
   }
   text += ", " + count(solids, "solid");
   if (const std::size_t moving = scene.at("moving").size(); moving > 0) {

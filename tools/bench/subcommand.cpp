@@ -17,7 +17,7 @@ std::string text_of(const Json& value) {
     return value.get<std::string>();
   }
   if (!value.is_number_float()) {
-    return value.dump();
+    return host::exact_json_text(value);
   }
   const double number = value;
   char text[64];

@@ -6,10 +6,10 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/plugins/registry.hpp"
 
 namespace altiplan::bench {

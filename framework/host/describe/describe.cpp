@@ -12,8 +12,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::array<const char*, 6> kKinds = {"environment",   "constraint", "planner",
                                                "local_planner", "smoother",   "tuner"};
 
@@ -133,8 +131,7 @@ Json json_of(const FieldSpec& spec) {
   Json json = {{"key", key_text(spec)}, {"type", type_text(spec)}};
   json["unit"] = spec.unit.empty() ? Json() : Json(spec.unit);
   json["required"] = spec.required;
-  json["default"] =
-      spec.default_json.empty() ? Json() : Json::parse(spec.default_json, nullptr, false);
+  json["default"] = spec.default_json.empty() ? Json() : json_or_discarded(spec.default_json);
   if (json["default"].is_discarded()) {
     json["default"] = spec.default_json;
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/plugins/registry.hpp"
 
 namespace altiplan::host {
@@ -26,7 +26,7 @@ struct Description {
 /// PluginError if its library is refused.
 std::vector<Description> describe_plugin(Registry& registry, std::string_view name);
 std::string describe_text(const Description& description);
-nlohmann::ordered_json describe_json(const Description& description);
+Json describe_json(const Description& description);
 
 /// The parameters as a Markdown table, one row each; those of lists and maps follow their key.
 std::string parameter_table(const std::vector<FieldSpec>& parameters);
@@ -44,6 +44,5 @@ std::vector<ListedPlugin> listed_plugins(const std::vector<Library>& libraries);
 /// A line for each refused library, and for each copy and each folder searched.
 std::string refused_text(const std::vector<Library>& libraries);
 std::string searched_text(const Registry& registry);
-nlohmann::ordered_json plugins_json(const Registry& registry,
-                                    const std::vector<Library>& libraries);
+Json plugins_json(const Registry& registry, const std::vector<Library>& libraries);
 }  // namespace altiplan::host

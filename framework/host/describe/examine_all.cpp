@@ -6,11 +6,6 @@
 #include "host/describe/describe.hpp"
 
 namespace altiplan::host {
-namespace {
-
-using Json = nlohmann::ordered_json;
-}  // namespace
-
 std::vector<Library> examine_all(Registry& registry) {
   registry.build_all();
   std::vector<Library> libraries(registry.libraries().begin(), registry.libraries().end());

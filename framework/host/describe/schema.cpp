@@ -9,8 +9,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kDraft = "http://json-schema.org/draft-07/schema#";
 
 /// Writes schemas; the parameters of each plugin are written once, into `definitions`.
@@ -77,7 +75,7 @@ class Writer {
       schema["description"] = text;
     }
     if (!field.default_json.empty() && field.type != FieldType::structure) {
-      Json given = Json::parse(field.default_json, nullptr, false);
+      Json given = json_or_discarded(field.default_json);
       if (!given.is_discarded() && !given.is_null()) {
         schema["default"] = std::move(given);
       }

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/plugins/registry.hpp"
 
 namespace altiplan::host {
@@ -36,13 +36,13 @@ std::vector<FieldSpec> fields_of() {
 }
 
 /// JSON Schemas (draft-07) of the files that users write; `study` declares the fields of a study.
-nlohmann::ordered_json scenario_schema(const Choices& choices);
-nlohmann::ordered_json pipeline_schema(const Choices& choices);
-nlohmann::ordered_json study_schema(const std::vector<FieldSpec>& study);
+Json scenario_schema(const Choices& choices);
+Json pipeline_schema(const Choices& choices);
+Json study_schema(const std::vector<FieldSpec>& study);
 /// One schema for all, and for papers: the keys identify the kind of file.
-nlohmann::ordered_json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study,
-                                       const std::vector<FieldSpec>& paper);
+Json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study,
+                     const std::vector<FieldSpec>& paper);
 /// Schema of a map with these fields; the parameters of plugins that it may name are in
 /// `definitions`.
-nlohmann::ordered_json schema_of(const std::vector<FieldSpec>& fields, const Choices& choices);
+Json schema_of(const std::vector<FieldSpec>& fields, const Choices& choices);
 }  // namespace altiplan::host

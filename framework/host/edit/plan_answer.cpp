@@ -18,9 +18,7 @@ constexpr std::size_t kQuickSamples = 60;
 
 constexpr const char* kKinds[] = {"plan", "page", "plugins"};
 
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string text_of(const Json& json) { return json_text(json); }
 
 /// True of a planner that has a route at any time, which more time only improves.
 bool is_anytime(const Config& config, const std::string& name) {

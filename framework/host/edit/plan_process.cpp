@@ -133,7 +133,7 @@ class Forks {
       }
       if (ready[0].revents != 0) {
         const auto message = receive_from(socket_);
-        if (!message || !begin(plan_task(Json::parse(message->second)))) {
+        if (!message || !begin(plan_task(parse_json(message->second)))) {
           return;
         }
       }
@@ -221,8 +221,7 @@ std::uint64_t PlanLine::begin(PlanTask task) {
   const std::lock_guard in_order(sending_);
   task.number = ++last_;
   // Not under the other lock: the receiver must go on, or both ends could wait for each other.
-  send(socket_, {0, task.number, 0},
-       to_json(task).dump(-1, ' ', false, Json::error_handler_t::replace));
+  send(socket_, {0, task.number, 0}, json_text(to_json(task)));
   return task.number;
 }
 

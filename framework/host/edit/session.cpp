@@ -110,7 +110,7 @@ PageAnswer EditSession::answer(const PageRequest& request) {
     if (request.method != "POST") {
       return {404, "application/json", error_answer("there is nothing at this address")};
     }
-    const Json wish = request.body.empty() ? Json::object() : Json::parse(request.body);
+    const Json wish = request.body.empty() ? Json::object() : parse_json(request.body);
     if (!wish.is_object()) {
       throw Error("expected a JSON object");
     }
@@ -125,7 +125,7 @@ PageAnswer EditSession::answer(const PageRequest& request) {
     if (json.is_null()) {
       return {404, "application/json", error_answer("there is nothing at this address")};
     }
-    return {200, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+    return {200, "application/json", json_text(json)};
   } catch (const std::exception& error) {
     return {400, "application/json", error_answer(sentence_of(error))};
   }
@@ -139,7 +139,7 @@ PageAnswer EditSession::page() {
     task = task_of(PlanTask::Kind::page);
     state_now = state();
   }
-  Json scene = Json::parse(line_.finish(line_.begin(task)).value_or(error_answer("superseded")));
+  Json scene = parse_json(line_.finish(line_.begin(task)).value_or(error_answer("superseded")));
   if (scene.contains("error")) {
     throw Error(scene.at("error").get<std::string>());
   }
@@ -264,7 +264,7 @@ Json EditSession::planned(const Json& wish) {
   for (const std::uint64_t number : numbers) {
     const std::optional<std::string> text = line_.finish(number);
     is_superseded = is_superseded || !text;
-    Json answer = Json::parse(text.value_or("{}"));
+    Json answer = parse_json(text.value_or("{}"));
     problem = answer.value("error", problem);
     json["answers"].push_back(std::move(answer));
   }

@@ -47,7 +47,8 @@ std::unique_ptr<Environment> build(const char* plugin, const fs::path& file,
   Site site;
   site.before = &empty;
   // The name has no folder that the file would be relative to.
-  const Value value = parse_yaml("{file: " + Json(file.string()).dump() + parameters + "}", plugin);
+  const Value value =
+      parse_yaml("{file: " + exact_json_text(file.string()) + parameters + "}", plugin);
   try {
     return registry.get("environment", plugin).environment(&value, site);
   } catch (const ConfigError& error) {
@@ -56,7 +57,8 @@ std::unique_ptr<Environment> build(const char* plugin, const fs::path& file,
 }
 
 std::string entry(const char* plugin, const fs::path& file, const std::string& parameters) {
-  return std::string("  - ") + plugin + ": {file: " + Json(file.string()).dump() + parameters + "}";
+  return std::string("  - ") + plugin + ": {file: " + exact_json_text(file.string()) + parameters +
+         "}";
 }
 
 std::string corner(const Vec3& p) {

@@ -25,7 +25,7 @@ constexpr Try kTry[FirstRoute::kTries] = {{0, 1}, {1, 1}, {2, 1}, {1, 2}};
 
 /// As short as it is exact.
 std::string text_of(double value) {
-  const std::string text = Json(value).dump();
+  const std::string text = exact_json_text(value);
   return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
 }
 std::string whole(double value) { return with_digits(std::round(value), 9); }
@@ -106,9 +106,9 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
   const std::vector<std::string> ids = zone_layers();
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const fs::path& file = wish_.avoid[i];
-    text += "  - zones: {file: " + Json(path_in(folder, file)).dump() +
+    text += "  - zones: {file: " + exact_json_text(path_in(folder, file)) +
             ", clip: true, horizon_s: " + text_of(horizon) + zone_parameters_[i] +
-            "}\n    id: " + Json(ids[i]).dump() + "\n";
+            "}\n    id: " + exact_json_text(ids[i]) + "\n";
   }
   return text;
 }
@@ -129,7 +129,7 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
     return "[" + text_of(p.x()) + ", " + text_of(p.y()) + ", " + text_of(p.z()) + "]";
   };
   std::string text = "# The world of a first route, written by altiplan go.\naltiplan: 1\nname: " +
-                     Json(wish_.terrain.front().stem().string()).dump() + "\n" +
+                     exact_json_text(wish_.terrain.front().stem().string()) + "\n" +
                      environment(volume, folder) + corridor_.frame_line() +
                      (corridor_.frame_line().empty() ? "" : "\n");
   text += "volume: {min_m: " + corner(volume.min) + ", max_m: " + corner(volume.max) + "}\n" +
@@ -143,7 +143,7 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
   }
   text += "goal: " + point(wish_.points.back()) + reached;
   if (wish_.start_time) {
-    text += "start_time: " + Json(*wish_.start_time).dump() + "\n";
+    text += "start_time: " + exact_json_text(*wish_.start_time) + "\n";
   }
   text += "constraints:\n  - ground_clearance: {min_m: " + text_of(heights_.min_m) + "}\n";
   if (heights_.max_m) {

@@ -154,7 +154,7 @@ FileInfo info_of(const formats::MissionFile& mission, const std::string& file) {
     info.facts.push_back("its items are not a route: " + mission.route_problem);
   }
   info.facts.insert(info.facts.end(), mission.notes.begin(), mission.notes.end());
-  const std::string name = Json(file).dump();
+  const std::string name = exact_json_text(file);
   if (!mission.zones.empty()) {
     info.scenario.insert(info.scenario.end(), {"environment:", "  - zones: {file: " + name + "}"});
   }

@@ -121,16 +121,16 @@ std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Reg
                                          const std::string& voids) {
   // The name has no folder that the file would be relative to.
   const Value parameters =
-      parse_yaml("{file: " + Json(tile.file.string()).dump() + ", voids: " + voids +
+      parse_yaml("{file: " + exact_json_text(tile.file.string()) + ", voids: " + voids +
                      (tile.crs.empty() ? "" : ", crs: " + tile.crs) + "}",
                  "terrain");
   return registry.get("environment", "terrain").environment(&parameters, site);
 }
 
 std::string terrain_entry(const Tile& tile, const std::string& file) {
-  return "  - terrain: {file: " + Json(file).dump() +
+  return "  - terrain: {file: " + exact_json_text(file) +
          (tile.crs.empty() ? "" : ", crs: " + tile.crs) +
-         ", voids: neighbours}\n    id: " + Json(tile.file.filename().string()).dump() + "\n";
+         ", voids: neighbours}\n    id: " + exact_json_text(tile.file.filename().string()) + "\n";
 }
 
 Tile read_tile(const fs::path& file, const std::string& crs, Registry& registry) {

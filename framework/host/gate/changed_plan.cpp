@@ -32,7 +32,7 @@ void raise(Json& number, double by) {
 }
 
 std::string changed_json(const std::string& text, const std::vector<ChangedItem>& changes) {
-  Json plan = Json::parse(text);
+  Json plan = parse_json(text);
   for (const ChangedItem& change : changes) {
     Json& item = plan.at(pointer_of(change.place));
     const bool old_form = item.contains("coordinate");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
 
 #include "altiplan/formats/iso_time.hpp"
+#include "host/base/json.hpp"
 #include "host/import_export/mission_text.hpp"
 
 namespace altiplan::host {
@@ -214,6 +214,6 @@ std::string geojson_text(const MissionText& text) {
     features.push_back(zone_json(zone, decimals));
   }
   const OrderedJson json{{"type", "FeatureCollection"}, {"features", features}};
-  return json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 }  // namespace altiplan::host

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "host/base/json.hpp"
 #include "host/import_export/plan.hpp"
 
 namespace altiplan::host {

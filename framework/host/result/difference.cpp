@@ -8,7 +8,7 @@ namespace {
 
 std::string shown(const Json& value) {
   constexpr std::size_t kLongest = 80;
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = json_text(value);
   if (text.size() > kLongest) {
     text.resize(text.find_last_of(" ,", kLongest) == text.npos ? kLongest
                                                                : text.find_last_of(" ,", kLongest));
@@ -73,8 +73,7 @@ std::optional<Difference> differ_at(const std::string& path, const Json& first,
     return arrays_differ(path, first, second);
   }
   // Compared as texts, to distinguish 0 from -0 and 1 from 1.0.
-  const auto replace = Json::error_handler_t::replace;
-  if (first.dump(-1, ' ', false, replace) == second.dump(-1, ' ', false, replace)) {
+  if (json_text(first) == json_text(second)) {
     return std::nullopt;
   }
   return Difference{path, shown(first), shown(second)};
@@ -89,8 +88,8 @@ std::optional<Difference> first_difference(const std::string& first, const std::
   if (first == second) {
     return std::nullopt;
   }
-  const Json one = first.empty() ? Json() : Json::parse(first, nullptr, false);
-  const Json other = second.empty() ? Json() : Json::parse(second, nullptr, false);
+  const Json one = first.empty() ? Json() : json_or_discarded(first);
+  const Json other = second.empty() ? Json() : json_or_discarded(second);
   if (one.is_discarded() || other.is_discarded()) {
     return Difference{"result", excerpt(first), excerpt(second)};
   }

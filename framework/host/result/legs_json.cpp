@@ -8,8 +8,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 const char* name(Leg::Kind kind) {
   return kind == Leg::Kind::straight ? "straight" : kind == Leg::Kind::arc ? "arc" : "trochoid";
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "altiplan/route.hpp"
+#include "host/base/json.hpp"
 
 namespace altiplan::host {
 
@@ -12,10 +12,9 @@ namespace altiplan::host {
 /// "radius_m", "heading_deg", "drift_m"}]. Angles of turn are positive to the left. The heading is
 /// that through the air at the leg's begin, clockwise from north; the drift that of the air during
 /// the leg, [east, north]. All four are null for a straight leg.
-nlohmann::ordered_json legs_json(const Route& route);
+Json legs_json(const Route& route);
 
 /// Reads them back; the first leg begins at `start`. Throws Error that begins with `place` (the
 /// file and the key).
-Route route_of_legs(const Vec3& start, const nlohmann::ordered_json& legs,
-                    const std::string& place);
+Route route_of_legs(const Vec3& start, const Json& legs, const std::string& place);
 }  // namespace altiplan::host

@@ -287,7 +287,5 @@ Json result_json(const Config& config, const RunResult& result) {
   return json;
 }
 
-std::string file_text(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string file_text(const Json& json) { return json_text(json, 1) + "\n"; }
 }  // namespace altiplan::host

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/config/config.hpp"
 #include "host/run/run_result.hpp"
 
 namespace altiplan::host {
-
-using Json = nlohmann::ordered_json;
 
 /// result.json, format 1 (docs/reference/result.md). Wall times appear only in keys that end in
 /// time_s.

@@ -58,7 +58,7 @@ Overrides stored_overrides(const Json& json, Overrides overrides) {
 /// Parses; throws Error if an object has a key twice, which is ambiguous.
 Json parse_unique(std::istream& in, const std::string& file) {
   std::vector<std::set<std::string>> open;
-  return Json::parse(in, [&](int, Json::parse_event_t event, const Json& parsed) {
+  return parse_json(in, [&](int, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::object_start) {
       open.emplace_back();
     } else if (event == Json::parse_event_t::object_end) {

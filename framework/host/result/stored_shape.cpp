@@ -149,7 +149,7 @@ std::string found_text(const Json& value) {
   if (value.is_structured()) {  // which may be nested too deeply to print
     return value.is_array() ? "a list of " + std::to_string(value.size()) : "an object";
   }
-  return excerpt(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return excerpt(json_text(value));
 }
 
 void expect_shape(const Json& result, const std::string& file) {

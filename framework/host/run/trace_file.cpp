@@ -3,9 +3,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "altiplan/error.hpp"
+#include "host/base/json.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -55,7 +55,7 @@ void TraceFile::add(const TraceEvent& event) {
     ++left_out_;
     return;
   }
-  std::string line = "{\"step\": " + nlohmann::json(step_).dump() + ", \"kind\": \"" +
+  std::string line = "{\"step\": " + exact_json_text(step_) + ", \"kind\": \"" +
                      kind_name(event.kind) + "\", \"node\": " + std::to_string(event.node) +
                      ", \"parent\": " + std::to_string(event.parent) + ", \"at\": [";
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,8 +8,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// The numbers of a question as `parts` lists of points, one after the other.
 class Points {
  public:

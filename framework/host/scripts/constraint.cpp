@@ -9,8 +9,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::chrono::seconds kAnswerTimeout(20);
 
 bool has(const char* method, const ScriptObject& object) {

@@ -13,8 +13,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::chrono::seconds kBuildTimeout(600);  ///< to build a layer
 
 /// As if a file had the values.
@@ -32,7 +30,7 @@ Value value_of(const Json& json) {
     }
   } else {
     value.quoted = json.is_string();
-    value.text = json.is_string() ? json.get<std::string>() : json.dump();
+    value.text = json.is_string() ? json.get<std::string>() : exact_json_text(json);
   }
   return value;
 }

@@ -14,8 +14,6 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// A plugin of a file of Python; kept to the end of the process, as libraries are.
 struct Script {
   fs::path file;
@@ -44,7 +42,7 @@ ScriptSource source_of(const Script& script, const Value* source) {
   }
   Json values = Json::object();
   for (const BoundField& field : report.fields) {
-    values[field.spec.name] = Json::parse(field.value_json);
+    values[field.spec.name] = parse_json(field.value_json);
   }
   return {script.file, script.entry.kind, script.name, std::move(values)};
 }

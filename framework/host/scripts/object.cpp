@@ -13,8 +13,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Processes without a planner, which have run the file; closed unless it is asked for.
 class Waiting {
  public:

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "altiplan/environment.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/smoother.hpp"
+#include "host/base/json.hpp"
 #include "host/scripts/answers.hpp"
 #include "host/scripts/worker.hpp"
 
@@ -23,7 +23,7 @@ struct ScriptSource {
   std::filesystem::path file;
   std::string kind;
   std::string name;
-  nlohmann::ordered_json parameters;  ///< a map
+  Json parameters;  ///< a map
 };
 
 /// An object in Python. Each call at a time has a process, which waits for the next one; one whose
@@ -37,7 +37,7 @@ class ScriptObject {
   ScriptObject& operator=(const ScriptObject&) = delete;
 
   /// What the object tells of itself.
-  const nlohmann::ordered_json& made() const { return made_; }
+  const Json& made() const { return made_; }
   /// Plans, or smooths the route if there is one.
   PlanResult answer(const Request& request, const Polyline* route) const;
   /// The answer to a call that has no budget, within `patience`; its questions are about `asked`.
@@ -46,13 +46,13 @@ class ScriptObject {
                        std::chrono::seconds patience) const;
 
  private:
-  std::unique_ptr<ScriptWorker> make_worker(nlohmann::ordered_json* made) const;
+  std::unique_ptr<ScriptWorker> make_worker(Json* made) const;
   std::unique_ptr<ScriptWorker> take_worker() const;
   void give_back(std::unique_ptr<ScriptWorker> worker) const;
   void forget_those_of_a_parent() const;
 
   ScriptSource source_;
-  nlohmann::ordered_json made_;
+  Json made_;
   mutable std::mutex mutex_;
   mutable pid_t owner_;  ///< a forked copy of this process must leave the others of `idle_` alone
   mutable std::vector<std::unique_ptr<ScriptWorker>> idle_;

@@ -9,7 +9,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Declared = ScriptField::Value;
 
 template <class T>

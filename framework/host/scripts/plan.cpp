@@ -8,8 +8,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr auto kGrace = std::chrono::milliseconds(500);  ///< to heed a stop
 constexpr auto kLook = std::chrono::milliseconds(20);    ///< between two looks at the budget
 }  // namespace

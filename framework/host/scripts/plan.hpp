@@ -24,7 +24,7 @@ class ScriptPlan {
   void watch_memory(Clock::time_point now);
   void answer(const ScriptMessage& question);
   PlanResult result_of(const ScriptMessage& answer) const;
-  void take_failure(const nlohmann::ordered_json& head, PlanResult& result) const;
+  void take_failure(const Json& head, PlanResult& result) const;
 
   const Request& request_;
   const Polyline* route_;

@@ -2,13 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "altiplan/params.hpp"
+#include "host/base/json.hpp"
 #include "host/base/plugin_file.hpp"
 
 namespace altiplan::host {
@@ -44,7 +44,7 @@ struct ScriptField {
 class ScriptParams {
  public:
   ScriptParams() = default;
-  explicit ScriptParams(const nlohmann::ordered_json& declared);
+  explicit ScriptParams(const Json& declared);
   void describe(Fields& fields);
 
  private:

@@ -6,8 +6,6 @@
 namespace altiplan::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// JSON has no infinity.

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "altiplan/environment.hpp"
 #include "altiplan/request.hpp"
+#include "host/base/json.hpp"
 
 namespace altiplan::host {
 
 // What crosses to a plugin in Python as values: everything but the world, which it asks.
-nlohmann::ordered_json script_values(const Request& request);
-nlohmann::ordered_json script_values(const Site& site);
+Json script_values(const Request& request);
+Json script_values(const Site& site);
 }  // namespace altiplan::host

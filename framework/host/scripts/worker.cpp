@@ -16,8 +16,6 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kDescriptor = 3;  ///< at which _worker.py talks
 constexpr auto kMessageTimeout = std::chrono::seconds(20);
 constexpr std::size_t kMaxHead = 1 << 28;
@@ -91,7 +89,7 @@ ScriptWorker::~ScriptWorker() {
 }
 
 void ScriptWorker::send(const Json& head, std::span<const double> numbers) {
-  const std::string text = head.dump();
+  const std::string text = exact_json_text(head);
   const std::array<std::uint32_t, 2> lengths = {std::uint32_t(text.size()),
                                                 std::uint32_t(numbers.size())};
   std::string bytes(sizeof lengths + text.size() + numbers.size_bytes(), '\0');
@@ -125,8 +123,7 @@ std::optional<ScriptMessage> ScriptWorker::taken() {
     return std::nullopt;
   }
   ScriptMessage message;
-  const auto text = received_.begin() + sizeof lengths;
-  message.head = Json::parse(text, text + lengths[0], nullptr, false);
+  message.head = json_or_discarded({received_.data() + sizeof lengths, lengths[0]});
   if (!message.head.is_object()) {
     throw no_message();
   }

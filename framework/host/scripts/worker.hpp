@@ -2,19 +2,19 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "host/base/json.hpp"
 #include "host/base/program.hpp"
 
 namespace altiplan::host {
 
 /// A message between this program and a process that runs a file of Python.
 struct ScriptMessage {
-  nlohmann::ordered_json head;
+  Json head;
   std::vector<double> numbers;
 };
 
@@ -31,14 +31,14 @@ class ScriptWorker {
   ScriptWorker& operator=(const ScriptWorker&) = delete;
 
   /// What the file offers: a list of plugins with their parameters.
-  const nlohmann::ordered_json& plugins() const { return plugins_; }
+  const Json& plugins() const { return plugins_; }
   /// Throws PluginError if it has ended.
-  void send(const nlohmann::ordered_json& head, std::span<const double> numbers = {});
+  void send(const Json& head, std::span<const double> numbers = {});
   /// The next message, or none until then. Throws PluginError if the process has ended, sends what
   /// is no message, or tells an exception.
   std::optional<ScriptMessage> receive(Clock::time_point until);
   /// The answer to a message; PluginError after a while.
-  ScriptMessage answer_to(const nlohmann::ordered_json& head);
+  ScriptMessage answer_to(const Json& head);
   /// Memory of the process, MiB; 0 if unknown.
   double memory_mb() const;
 
@@ -49,7 +49,7 @@ class ScriptWorker {
   std::filesystem::path file_;
   Program program_;
   std::string received_;
-  nlohmann::ordered_json plugins_;
+  Json plugins_;
   int process_ = 0;
 };
 }  // namespace altiplan::host

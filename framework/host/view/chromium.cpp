@@ -93,7 +93,7 @@ Json ShownPage::call(const char* method, Json parameters) {
   if (!session_.empty()) {
     command["sessionId"] = session_;
   }
-  std::string text = command.dump();
+  std::string text = exact_json_text(command);
   text += '\0';
   if (!program_.send(text, Clock::now() + timeout_)) {
     give_up();
@@ -113,7 +113,7 @@ Json ShownPage::answer_to(int id, const char* method) {
       }
       continue;
     }
-    const Json message = Json::parse(unread_.substr(0, length), nullptr, false);
+    const Json message = json_or_discarded(unread_.substr(0, length));
     unread_.erase(0, length + 1);
     searched = 0;
     if (!message.is_object() || message.value("id", 0) != id) {

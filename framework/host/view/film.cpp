@@ -101,9 +101,9 @@ std::string film(const FilmMakers& makers, const std::string& page, double secon
   ShownPage shown(makers.chromium, page, "?film&theme=light", kPixelsWide, kPixelsHigh, kTimeout);
   Encoder encoder(makers);
   const auto frames = std::size_t(std::lround(seconds * kPerSecond));
-  shown.run("altiplan.film.begin(" + Json(seconds).dump() + ")");
+  shown.run("altiplan.film.begin(" + exact_json_text(seconds) + ")");
   for (std::size_t frame = 0; frame < frames; ++frame) {
-    shown.run("altiplan.film.frame(" + Json(double(frame) / kPerSecond).dump() + ")");
+    shown.run("altiplan.film.frame(" + exact_json_text(double(frame) / kPerSecond) + ")");
     encoder.add(shown.picture("jpeg"));
     progress(frame + 1, frames);
   }

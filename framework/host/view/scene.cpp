@@ -130,8 +130,8 @@ void name_apart(Json& results) {
 
 /// Identifies the mission of a result, apart from the plugin folders: those of the call.
 std::string mission_text(const StoredResult& stored) {
-  std::string text = stored.pipeline.string() + '\n' + stored.json.at("scenario").dump() + '\n' +
-                     std::to_string(stored.overrides.seed.value_or(0));
+  std::string text = stored.pipeline.string() + '\n' + exact_json_text(stored.json.at("scenario")) +
+                     '\n' + std::to_string(stored.overrides.seed.value_or(0));
   for (const std::string& set : stored.overrides.set) {
     text += '\n' + set;
   }

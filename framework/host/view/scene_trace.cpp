@@ -73,7 +73,7 @@ class Reader {
  public:
   /// Throws a Json::exception or an Error if the line is not an event.
   void add(const std::string& line) {
-    const Json json = Json::parse(line);
+    const Json json = parse_json(line);
     Event event;
     event.line = count_;
     event.step = step_number(json.at("step").get_ref<const std::string&>());
@@ -179,7 +179,7 @@ class Reader {
 };
 
 bool begins_a_trace(const std::string& line) {
-  const Json json = Json::parse(line, nullptr, false);
+  const Json json = json_or_discarded(line);
   return json.is_object() && json.contains("altiplan_trace") && json["altiplan_trace"] == 1;
 }
 

@@ -162,7 +162,7 @@ std::string_view viewer_template() {
 }
 
 std::string viewer_page(const Json& scene) {
-  const std::string text = packed(scene).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = json_text(packed(scene));
   const std::string_view around = viewer_template();
   const std::size_t place = around.find(kScenePlace);
   std::string page;

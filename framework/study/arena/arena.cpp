@@ -143,7 +143,7 @@ class ArenaWriter {
       return "";
     }
     const auto run = Store(data_.stores[row->store], StoreMode::read).run(row->id);
-    const host::Json json = run ? host::Json::parse(run->result, nullptr, false) : host::Json();
+    const host::Json json = run ? host::json_or_discarded(run->result) : host::Json();
     std::string text;
     for (const host::Json& step :
          json.is_object() ? json.value("steps", host::Json::array()) : host::Json()) {

@@ -104,8 +104,8 @@ bool same_budget(const StudyBudget& one, const StudyBudget& other) {
 
 std::vector<std::string> changed_results(const std::string& then, const std::string& now) {
   try {
-    const host::Json before = host::Json::parse(then);
-    const host::Json after = host::Json::parse(now);
+    const host::Json before = host::parse_json(then);
+    const host::Json after = host::parse_json(now);
     std::vector<std::string> changed = changed_origins(before, after);
     const std::string was = before.at("version").get<std::string>();
     const std::string is = after.at("version").get<std::string>();

@@ -71,10 +71,10 @@ Replayed compare_replay(const StoredRun& stored, const host::Json& result, const
                          ? std::nullopt
                          : std::optional(host::Difference{"status", stored.outcome, status})};
   }
-  const host::Json before = host::Json::parse(stored.result, nullptr, false);
+  const host::Json before = host::json_or_discarded(stored.result);
   try {
     // As stored: invalid UTF-8 in a plugin's message has been replaced.
-    const host::Json now = host::Json::parse(host::file_text(result));
+    const host::Json now = host::parse_json(host::file_text(result));
     std::vector<std::string> changed = what_changed(before, now);
     if (changed.empty() && key != stored.key) {
       changed.push_back("the program is another build than that of the stored run");

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+
+#include "host/base/json.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -111,7 +112,7 @@ std::string flow_text(const Value& value) {
   std::string text;
   switch (value.kind) {
     case Value::Kind::scalar:
-      return value.quoted || needs_quotes(value.text) ? nlohmann::json(value.text).dump()
+      return value.quoted || needs_quotes(value.text) ? host::exact_json_text(value.text)
                                                       : value.text;
     case Value::Kind::list:
       for (const Value& item : value.items) {
@@ -120,7 +121,7 @@ std::string flow_text(const Value& value) {
       return "[" + text + "]";
     case Value::Kind::map:
       for (const Value::Entry& entry : value.entries) {
-        text += (text.empty() ? "" : ", ") + nlohmann::json(entry.key).dump() + ": " +
+        text += (text.empty() ? "" : ", ") + host::exact_json_text(entry.key) + ": " +
                 flow_text(entry.value);
       }
       return "{" + text + "}";

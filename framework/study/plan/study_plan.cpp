@@ -38,8 +38,8 @@ std::string pair_text(const host::Config& config, const StudyBudget& budget) {
       text += host::sha256_of_present(file) + "\n";
     }
   }
-  text += host::plugins_json(config).dump() + "\n";
-  text += host::Json({budget.wall_s, budget.cpu_s.value_or(0), budget.memory_mb}).dump() + "\n";
+  text += host::exact_json_text(host::plugins_json(config)) + "\n";
+  text += host::exact_json_text({budget.wall_s, budget.cpu_s.value_or(0), budget.memory_mb}) + "\n";
   return text;
 }
 

@@ -43,7 +43,7 @@ class Budget {
     for (std::size_t i = 0; steps != nullptr && i < steps->items.size(); ++i) {
       const std::string step = host::item(path, i);
       if (steps->items[i].find("plan") != nullptr && budget_.time_s) {
-        set(variant, step + ".within_s", host::Json(*budget_.time_s).dump(), "budget.time_s");
+        set(variant, step + ".within_s", host::exact_json_text(*budget_.time_s), "budget.time_s");
       }
       if (steps->items[i].find("plan") != nullptr && budget_.iterations) {
         set(variant, step + ".within_iterations", std::to_string(*budget_.iterations),

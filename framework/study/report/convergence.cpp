@@ -120,7 +120,7 @@ std::vector<Progress> progress_of(std::string_view trace) {
     const std::size_t begin = trace.rfind('\n', at) + 1;
     const std::size_t end = std::min(trace.find('\n', at), trace.size());
     at = end;
-    const host::Json line = host::Json::parse(trace.substr(begin, end - begin), nullptr, false);
+    const host::Json line = host::json_or_discarded(trace.substr(begin, end - begin));
     if (!line.is_object() || line.value("kind", host::Json()) != "iteration" ||
         !line.value("step", host::Json()).is_string()) {
       continue;

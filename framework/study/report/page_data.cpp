@@ -128,7 +128,7 @@ std::string page_data(const Content& content, const Table& scenarios) {
   for (std::size_t at = kRowsShown; at < scenarios.rows.size(); ++at) {
     json["more_rows"].push_back(html_row(scenarios, at));
   }
-  std::string text = json.dump(-1, ' ', false, host::Json::error_handler_t::replace);
+  std::string text = host::json_text(json);
   text.back() = ',';
   return text + "\"values\":" + values_json(data, columns) + "}";
 }

@@ -60,7 +60,7 @@ Builds builds_of(const StudyData& data, const ResultSource& results) {
     if (seen.count(kind) > 0) {
       continue;
     }
-    const host::Json json = host::Json::parse(results(row), nullptr, false);
+    const host::Json json = host::json_or_discarded(results(row));
     if (!json.is_object() || !json.contains("version") || !json.contains("plugins")) {
       continue;
     }

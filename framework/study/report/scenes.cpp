@@ -87,7 +87,7 @@ host::StoredResult result_of(const StudyData& data, std::size_t row, const std::
                              const SceneOptions& options) {
   host::Overrides overrides;
   overrides.plugin_path = options.plugin_path;
-  host::Json json = host::Json::parse(text);
+  host::Json json = host::parse_json(text);
   if (!options.times) {
     drop_times(json);
   }
@@ -108,7 +108,7 @@ std::string scene_text(const StudyData& data, const std::vector<std::size_t>& ro
   const RunRow& first = data.rows[rows.front()];
   scene["title"] = data.scenarios[first.scenario].name + " #" + std::to_string(first.repetition);
   thin_scene(scene);
-  return scene.dump(-1, ' ', false, host::Json::error_handler_t::replace);
+  return host::json_text(scene);
 }
 
 /// A line of JSON with the changes since each row was made, followed by the packed scene of the
@@ -201,7 +201,7 @@ class SceneMaker {
             const std::string& text) {
     const std::size_t line = std::min(text.find('\n'), text.size());
     const auto changes =
-        host::Json::parse(text.substr(0, line)).get<std::vector<std::vector<std::string>>>();
+        host::parse_json(text.substr(0, line)).get<std::vector<std::vector<std::string>>>();
     PackedScene scene;
     for (std::size_t at = 0; at < rows.size(); ++at) {
       for (const std::string& change : changes.at(at)) {

@@ -37,8 +37,7 @@ std::string payload_of(const RunOutcome& run) {
                            {"values", run.values},
                            {"result_bytes", run.result.size()},
                            {"trace_bytes", run.trace.size()}};
-  return head.dump(-1, ' ', false, host::Json::error_handler_t::replace) + "\n" + run.result +
-         run.trace;
+  return host::json_text(head) + "\n" + run.result + run.trace;
 }
 
 RunOutcome without_result(Outcome outcome, std::string why) {
@@ -59,7 +58,7 @@ struct PayloadHead {
 /// nullopt if the payload is damaged.
 std::optional<PayloadHead> head_of(const std::string& payload) {
   const std::size_t end = payload.find('\n');
-  const host::Json json = host::Json::parse(payload.substr(0, end), nullptr, false);
+  const host::Json json = host::json_or_discarded(payload.substr(0, end));
   PayloadHead head;
   try {
     const std::optional<Outcome> outcome =
@@ -241,8 +240,7 @@ std::string signal_name(int number) {
 
 /// A plugin's text as UTF-8, with U+FFFD for invalid bytes.
 std::string in_utf8(const std::string& text) {
-  return host::Json::parse(
-      host::Json(text).dump(-1, ' ', false, host::Json::error_handler_t::replace));
+  return host::parse_json(host::json_text(host::Json(text)));
 }
 
 /// The message with the end of the output on stdout and stderr, in one line.
@@ -280,7 +278,7 @@ std::string cause_of(const Ended& ended, std::string& output) {
 RunOutcome crashed(const Ended& ended) {
   std::string output = ended.output;
   RunOutcome run = without_result(Outcome::crashed, ended.note + " " + cause_of(ended, output));
-  const host::Json result = host::Json::parse(ended.crash_report, nullptr, false);
+  const host::Json result = host::json_or_discarded(ended.crash_report);
   if (ended.how == Ending::exited && result.is_object() && result.contains("message")) {
     run.outcome = ended.exit_code == kStuck ? Outcome::failed : Outcome::crashed;
     run.message = result["message"].get<std::string>();

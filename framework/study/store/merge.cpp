@@ -47,7 +47,7 @@ bool is_same(const StoredSession& a, const StoredSession& b) {
 
 /// A result without the paths of its files, which differ if the study was moved.
 host::Json without_places(const std::string& result) {
-  host::Json json = result.empty() ? host::Json() : host::Json::parse(result, nullptr, false);
+  host::Json json = result.empty() ? host::Json() : host::json_or_discarded(result);
   if (json.is_object()) {
     json.erase("pipeline");
     json.erase("scenario");

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study/store/store_database.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "altiplan/error.hpp"
 #include "host/base/deflate.hpp"
+#include "host/base/json.hpp"
 #include "host/base/machine_fault.hpp"
 #include "study/store/place.hpp"
 
@@ -12,7 +11,7 @@ namespace altiplan::study {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using host::Json;
 
 constexpr std::int64_t kVersion = 2;
 /// Limit of an unpacked result or trace (bytes), since a few kB of zeros expand to a gigabyte.
@@ -188,7 +187,7 @@ void StoreDatabase::add_variants(const char* table,
       "(name, of, file, overrides) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE SET "
       "of = excluded.of, file = excluded.file, overrides = excluded.overrides");
   for (const StoredVariant& variant : variants) {
-    insert.run(variant.name, variant.of, variant.file, Json(variant.set).dump());
+    insert.run(variant.name, variant.of, variant.file, host::exact_json_text(variant.set));
   }
 }
 
@@ -199,7 +198,7 @@ std::vector<StoredVariant> StoreDatabase::variants(const char* table) const {
   while (rows.step()) {
     StoredVariant variant{rows.text(0), rows.text(1), rows.text(2), {}};
     try {
-      variant.set = Json::parse(rows.blob(3)).get<std::vector<std::string>>();
+      variant.set = host::parse_json(rows.blob(3)).get<std::vector<std::string>>();
     } catch (const Json::exception&) {
       throw Error("the database '" + sqlite.file().string() + "': the overrides of '" +
                   variant.name + "' are not a list of strings");

@@ -7,12 +7,12 @@
 #include <chrono>
 #include <csignal>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <thread>
 
 #include "altiplan/error.hpp"
+#include "host/base/json.hpp"
 #include "test_process.hpp"
 
 namespace altiplan::cli {

@@ -41,7 +41,7 @@ Json measure(const std::string& pipeline, const host::Overrides& overrides, int 
     row["ms"] = 1e3 * (wall_s() - begin);
     row["cpu_ms"] = 1e3 * (process_s() - begin_cpu);
     if (asked) {
-      std::cout << row.dump() << std::endl;
+      std::cout << host::exact_json_text(row) << std::endl;
     } else {
       figures["calls"].push_back(std::move(row));
     }
