@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # altiplan_add_assimp_plugin(KIND NAME): altiplan_add_plugin for a plugin that reads models, or a
-# message where assimp is missing or off. Its test is built with its sources but NAME.cpp, and with
-# assimp to write models.
+# message where assimp is missing or off. The tests of the kind are built with its sources but NAME.cpp,
+# and with assimp to write models.
 
 option(ALTIPLAN_WITH_ASSIMP "Build the plugins that read models (assimp >= 5.2)" ON)
 if(ALTIPLAN_WITH_ASSIMP)
@@ -19,10 +19,10 @@ function(altiplan_add_assimp_plugin kind name)
   set(ALTIPLAN_PLUGIN_COMPONENT geo)
   altiplan_add_plugin(${kind} ${name})
   target_link_libraries(altiplan_${kind}_${name} PRIVATE assimp::assimp)
-  if(TARGET test_${kind}_${name})
+  if(TARGET test_${kind}s)
     file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
     list(FILTER sources EXCLUDE REGEX "(_test|/${name})\\.cpp$")
-    target_sources(test_${kind}_${name} PRIVATE ${sources})
-    target_link_libraries(test_${kind}_${name} PRIVATE assimp::assimp)
+    target_sources(test_${kind}s PRIVATE ${sources})
+    target_link_libraries(test_${kind}s PRIVATE assimp::assimp)
   endif()
 endfunction()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# altiplan_add_test(NAME SOURCES…): a GoogleTest program, as one test. It is labelled quick unless it is
-# among these, which take more than two seconds. Suites whose name starts with Nightly are a test of their
-# own, labelled nightly.
+# altiplan_add_test(PROGRAM NAME SOURCES…): the suites of SOURCES as the test NAME, which runs them alone
+# in the GoogleTest program test_PROGRAM; the files of a program are compiled as units. A test is labelled
+# quick unless it is among these, which take more than two seconds. Suites whose name starts with Nightly
+# are a test of their own, labelled nightly.
 set(ALTIPLAN_SLOW_TESTS
   environment_terrain framework_body_turns framework_many_corners framework_obstacle_tree
   framework_shape framework_swept_volume host_report host_watchdog host_worker_pool_limits
@@ -10,26 +11,64 @@ set(ALTIPLAN_SLOW_TESTS
   planner_lazy_theta_star planner_ompl planner_stratified_theta reference_colony_oracle
   reference_random_colonies reference_zone_maps)
 
-function(altiplan_add_test name)
-  add_executable(test_${name} ${ARGN})
-  target_link_libraries(test_${name} PRIVATE altiplan_test_support)
-  # What is tested is built as it is shipped; the tests need not be, and this is a third quicker.
-  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  altiplan_precompile(test_${name} tests <gtest/gtest.h>)
-  set_target_properties(test_${name} PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  add_test(NAME ${name} COMMAND test_${name} --gtest_filter=-Nightly*:-*/Nightly*)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
-  if(NOT name IN_LIST ALTIPLAN_SLOW_TESTS)
-    set_tests_properties(${name} PROPERTIES LABELS quick)
+function(altiplan_test_program program)
+  set(target test_${program})
+  if(TARGET ${target})
+    return()
   endif()
-  set(nightly)
+  add_executable(${target})
+  target_link_libraries(${target} PRIVATE altiplan_test_support)
+  # What is tested is built as it is shipped; the tests need not be, and this is a third quicker.
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  altiplan_precompile(${target} tests <gtest/gtest.h>)
+  altiplan_unite(${target} 10)
+  set_target_properties(${target} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  set_property(GLOBAL APPEND PROPERTY ALTIPLAN_TEST_PROGRAMS ${target})
+endfunction()
+
+function(altiplan_add_test program name)
+  altiplan_test_program(${program})
+  target_sources(test_${program} PRIVATE ${ARGN})
+  # Read again when a file changes: a suite that no test names would not be run.
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
+  set(suites_day)
+  set(suites_nightly)
   foreach(source IN LISTS ARGN)
-    file(STRINGS ${source} cases REGEX "^TEST(_F|_P)?\\(Nightly")
-    list(APPEND nightly ${cases})
+    file(STRINGS ${source} cases REGEX "^TEST(_F|_P)?\\(")
+    foreach(case IN LISTS cases)
+      if(NOT case MATCHES "^TEST(_F|_P)?\\(([A-Za-z0-9_]+)")
+        continue()
+      endif()
+      set(suite ${CMAKE_MATCH_2})
+      get_property(owner GLOBAL PROPERTY ALTIPLAN_SUITE_${program}_${suite})
+      if(owner AND NOT owner STREQUAL name)
+        message(FATAL_ERROR "${source}: the suite ${suite} is that of the test ${owner}, too")
+      endif()
+      set_property(GLOBAL PROPERTY ALTIPLAN_SUITE_${program}_${suite} ${name})
+      set(kind day)
+      if(suite MATCHES "^Nightly")
+        set(kind nightly)
+      endif()
+      if(CMAKE_MATCH_1 STREQUAL "_P")
+        set(suite */${suite})
+      endif()
+      list(APPEND suites_${kind} ${suite}.*)
+    endforeach()
   endforeach()
-  if(nightly)
-    add_test(NAME ${name}_nightly COMMAND test_${name} --gtest_filter=Nightly*:*/Nightly*)
+  foreach(kind IN ITEMS day nightly)
+    list(REMOVE_DUPLICATES suites_${kind})
+    list(JOIN suites_${kind} : filter_${kind})
+  endforeach()
+  if(suites_day)
+    add_test(NAME ${name} COMMAND test_${program} --gtest_filter=${filter_day})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+    if(NOT name IN_LIST ALTIPLAN_SLOW_TESTS)
+      set_tests_properties(${name} PROPERTIES LABELS quick)
+    endif()
+  endif()
+  if(suites_nightly)
+    add_test(NAME ${name}_nightly COMMAND test_${program} --gtest_filter=${filter_nightly})
     set_tests_properties(${name}_nightly PROPERTIES LABELS nightly TIMEOUT 7200)
   endif()
 endfunction()

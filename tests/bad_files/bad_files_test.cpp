@@ -18,7 +18,7 @@
 #include "study/plan/study_plan.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::bad_files_test {
 using namespace study;
 namespace {
 namespace fs = std::filesystem;
@@ -77,10 +77,11 @@ std::vector<Case> cases() {
   return all;
 }
 
-class BadFiles : public testing::Test {
+class BadFiles : public ::testing::Test {
  protected:
   BadFiles()
-      : folder_(fs::path(testing::TempDir()) / ("altiplan_bad_files_" + std::to_string(getpid()))) {
+      : folder_(fs::path(::testing::TempDir()) /
+                ("altiplan_bad_files_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
     overrides_.plugin_path = {altiplan::folders::build() / "lib/altiplan/plugins"};
   }
@@ -155,4 +156,4 @@ TEST_F(BadFiles, EveryMistakeIsReportedOnceAndInItsPlace) {
   }
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::bad_files_test

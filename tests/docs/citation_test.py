@@ -7,7 +7,7 @@ import sys
 try:
     import yaml
 except ImportError:
-    print("skipped: needs python3-yaml")
+    print("skipped: needs python3-yaml (tools/setup ci)")
     sys.exit(77)
 
 

@@ -13,7 +13,7 @@
 #include "altiplan/geometry.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::airspace_test {
 namespace {
 
 using formats::Airspace;
@@ -276,4 +276,4 @@ TEST(Airspace, FlightLevelsFollowThePressure) {
   EXPECT_GT(formats::standard_to_sea(3048, 1030), 3150);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::airspace_test

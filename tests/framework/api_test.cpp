@@ -11,7 +11,7 @@
 #error "an API is no later one"
 #endif
 
-namespace {
+namespace api_test {
 
 constexpr int kMajor = ALTIPLAN_API_MAJOR;
 constexpr int kMinor = ALTIPLAN_API_MINOR;
@@ -21,4 +21,4 @@ TEST(Api, AtLeastComparesTheMajorFirst) {
   EXPECT_TRUE(ALTIPLAN_API_AT_LEAST(kMajor, kMinor - 1));
   EXPECT_FALSE(ALTIPLAN_API_AT_LEAST(kMajor + 1, kMinor - 1));
 }
-}  // namespace
+}  // namespace api_test

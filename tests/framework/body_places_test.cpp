@@ -5,7 +5,7 @@
 #include "altiplan/shape.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::body_places_test {
 namespace {
 
 const Vec3 kStart{0, 0, 10};
@@ -131,4 +131,4 @@ TEST(BodyPlaces, DistancesOfRandomCapsulesAreExact) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::body_places_test

@@ -7,7 +7,7 @@
 #include "altiplan/error.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::body_test {
 namespace {
 
 using testing::request_in;
@@ -166,4 +166,4 @@ TEST(Body, RadiiAboutTheReferencePoint) {
   EXPECT_THROW(capsule_part(1, 1.5, {0, 0, 0}), Error);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::body_test

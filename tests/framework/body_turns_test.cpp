@@ -8,7 +8,7 @@
 #include "reference/body_tally.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::oracle {
+namespace altiplan::oracle::body_turns_test {
 namespace {
 
 constexpr double kScales[] = {1, 10, 100};  // metres, of obstacles and radii
@@ -137,4 +137,4 @@ TEST(NightlyBodyTurns, AtWaypointsMeetWhatTheOracleFinds) {
 }
 TEST(NightlyBodyTurns, AlongArcsMeetWhatTheOracleFinds) { compare("arc", 100, 4, drawn_arc); }
 }  // namespace
-}  // namespace altiplan::oracle
+}  // namespace altiplan::oracle::body_turns_test

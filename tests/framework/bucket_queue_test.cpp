@@ -7,7 +7,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::bucket_queue_test {
 namespace {
 
 /// What the queue is to do, by a stack for each key.
@@ -110,4 +110,4 @@ TEST(BucketQueue, CountsTheBytesUsedSinceItWasEmptied) {
   EXPECT_EQ(push_two(), few);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::bucket_queue_test

@@ -3,7 +3,7 @@
 
 #include "altiplan/request.hpp"
 
-namespace altiplan {
+namespace altiplan::budget_watch_test {
 namespace {
 
 /// Of `calls` quick ones, the first that says spent; `calls` where none does.
@@ -71,4 +71,4 @@ TEST(BudgetWatch, ShowsItsCountsToWhoeverWatches) {
   EXPECT_EQ(progress.best, 12.5);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::budget_watch_test

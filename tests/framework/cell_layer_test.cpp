@@ -7,7 +7,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::cell_layer_test {
 namespace {
 
 VoxelGrid random_cells(RandomStream& random, double density) {
@@ -130,4 +130,4 @@ TEST(CellLayer, ItsOwnGridComesBackAsItIs) {
   EXPECT_THROW(CellLayer{VoxelGrid(GridSpec{})}, Error);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::cell_layer_test

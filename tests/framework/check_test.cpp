@@ -6,7 +6,7 @@
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::check_test {
 namespace {
 
 using testing::request_in;
@@ -276,4 +276,4 @@ TEST(Measures, TheSpeedLawSlowsNearAnObstacle) {
               300.0 / 10 + 700.0 / 20, 0.2);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::check_test

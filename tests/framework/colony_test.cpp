@@ -3,7 +3,7 @@
 
 #include "altiplan/kit/colony/colony.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::colony_test {
 namespace {
 
 TEST(Power, IsThatOfTheLibrary) {
@@ -139,4 +139,4 @@ TEST(CellBits, AroundACellAreItsEightNeighbours) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::colony_test

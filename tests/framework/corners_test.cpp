@@ -5,7 +5,7 @@
 
 #include "support/walks.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::corners_test {
 namespace {
 
 using testing::open_request;
@@ -175,4 +175,4 @@ TEST(Corners, NoRuleGetsWorseWhateverTheCurves) {
   EXPECT_GT(replaced, 100);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::corners_test

@@ -5,7 +5,7 @@
 
 #include "framework/dubins_oracle.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::dubins_airplane_test {
 namespace {
 
 namespace oracle = dubins_oracle;
@@ -106,8 +106,8 @@ void check(const Pose& from, const Pose& to, int steps, Counts& counts) {
 Counts compare(std::uint64_t seed, int pairs, double within, double height, int steps) {
   RandomStream random(seed);
   Counts counts;
-  for (int n = 0; n < pairs && !testing::Test::HasFailure(); ++n) {
-    SCOPED_TRACE(testing::Message() << "pair " << n << " within " << within);
+  for (int n = 0; n < pairs && !::testing::Test::HasFailure(); ++n) {
+    SCOPED_TRACE(::testing::Message() << "pair " << n << " within " << within);
     const Pose from = random_pose(random, within * kLimits.radius, height);
     const Pose to = random_pose(random, within * kLimits.radius, height);
     check(from, to, steps, counts);
@@ -159,4 +159,4 @@ TEST(DubinsAirplane, AboveItselfItFliesAHelix) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::dubins_airplane_test

@@ -5,7 +5,7 @@
 
 #include "framework/dubins_oracle.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::dubins_test {
 namespace {
 
 namespace oracle = dubins_oracle;
@@ -21,7 +21,7 @@ void compare(std::uint64_t seed, int pairs, double within) {
   for (int n = 0; n < pairs; ++n) {
     const Pose from = random_pose(random, within * kRadius);
     const Pose to = random_pose(random, within * kRadius);
-    SCOPED_TRACE(testing::Message() << "pair " << n << " within " << within);
+    SCOPED_TRACE(::testing::Message() << "pair " << n << " within " << within);
     const std::array<double, 6> expected =
         oracle::lengths(oracle::place(from), oracle::place(to), kRadius);
     const std::array<double, 6> lengths = PosePair(from, to).lengths(kRadius);
@@ -40,7 +40,7 @@ void compare(std::uint64_t seed, int pairs, double within) {
     const DubinsPath path = dubins_path(from, to, kRadius);
     ASSERT_NEAR(path.length(), shortest, slack);
     expect_flyable(path.legs(from, to.position), from, to);
-    ASSERT_FALSE(testing::Test::HasFailure());
+    ASSERT_FALSE(::testing::Test::HasFailure());
   }
 }
 
@@ -160,4 +160,4 @@ TEST(Dubins, TheHeightChangesLinearly) {
   EXPECT_EQ(legs.back().to, to.position);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::dubins_test

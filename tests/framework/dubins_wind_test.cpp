@@ -5,7 +5,7 @@
 
 #include "framework/dubins_oracle.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::dubins_wind_test {
 namespace {
 
 namespace oracle = dubins_oracle;
@@ -135,8 +135,8 @@ void expect_flyable(const WindPath& path, const Pose& from, const Pose& to) {
 void compare(std::uint64_t seed, int pairs, double within) {
   RandomStream random(seed);
   int missed = 0;
-  for (int n = 0; n < pairs && !testing::Test::HasFailure(); ++n) {
-    SCOPED_TRACE(testing::Message() << "pair " << n << " within " << within);
+  for (int n = 0; n < pairs && !::testing::Test::HasFailure(); ++n) {
+    SCOPED_TRACE(::testing::Message() << "pair " << n << " within " << within);
     const Pose from = random_pose(random, within * kRadius);
     const Pose to = random_pose(random, within * kRadius);
     const Air air = random_air(random, random.uniform(0, 0.95));
@@ -273,4 +273,4 @@ TEST(DubinsWind, ABoundOnTheLengthChangesNoAnswerBelowIt) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::dubins_wind_test

@@ -6,7 +6,7 @@
 #include "framework/shape_oracle.hpp"
 #include "reference/fcl_peer.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::fcl_test {
 namespace {
 
 using oracle::Draw;
@@ -75,4 +75,4 @@ TEST(Fcl, AgreesOnLegsAndDistances) {
   EXPECT_GT(blocked, 3000);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::fcl_test

@@ -9,7 +9,7 @@
 #include "support/folders.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::ground_steps_test {
 namespace {
 
 struct Case {
@@ -132,4 +132,4 @@ TEST(GroundSteps, WhatIsPermittedAllAroundIsPermittedStepByStep) {
   EXPECT_LT(around, 2500);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::ground_steps_test

@@ -5,7 +5,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan {
+namespace altiplan::ground_test {
 namespace {
 
 /// A plane that rises eastward, with a dome of radius 30 over the origin.
@@ -145,4 +145,4 @@ TEST(Ground, ColumnsAreBlockedUpToTheHighestGround) {
   EXPECT_TRUE(none.blocked(9, 9, 19));
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::ground_test

@@ -6,7 +6,7 @@
 #include "altiplan/kit/layers/field_within.hpp"
 #include "altiplan/random.hpp"
 
-namespace altiplan {
+namespace altiplan::ground_within_test {
 namespace {
 
 using kit::GroundPiece;
@@ -113,4 +113,4 @@ TEST(GroundWithin, OfALegToAPlane) {
   EXPECT_NEAR(beside.x, 11, 1e-12);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::ground_within_test

@@ -6,7 +6,7 @@
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::headings_test {
 namespace {
 
 Request empty_request(const Polyline& route) {
@@ -107,4 +107,4 @@ TEST(Fillets, MessagesTellTheRadiusFromItsLimit) {
             "the turn radius is 200.0000 m, below the limit of 200.0004 m");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::headings_test

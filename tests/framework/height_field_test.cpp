@@ -8,7 +8,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan {
+namespace altiplan::height_field_test {
 namespace {
 
 const float kVoid = std::numeric_limits<float>::quiet_NaN();
@@ -217,4 +217,4 @@ TEST(HeightField, RefusesWhatIsNoField) {
   EXPECT_THROW(HeightField({0, 0}, {1, 1}, 2, 2, {0, 0, 0, float(kInfinity)}), Error);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::height_field_test

@@ -9,7 +9,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::kd_tree_test {
 namespace {
 
 /// Looks at each point.
@@ -131,7 +131,7 @@ void run_kind(const Kind& kind, KdTree& tree) {
       const Vec3 p = kind.draw(random, plain);
       const Vec3 q = random.integer(0, 1) == 0 ? kind.draw(random, plain) : plain.points[some()];
       expect_equal(tree, plain, p, q, random);
-      ASSERT_FALSE(testing::Test::HasFailure()) << kind.name << ", step " << step;
+      ASSERT_FALSE(::testing::Test::HasFailure()) << kind.name << ", step " << step;
     }
   }
   for (std::size_t number = 0; number < plain.points.size(); ++number) {
@@ -203,4 +203,4 @@ TEST(KdTree, EqualsLookingAtEachOfManyPoints) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::kd_tree_test

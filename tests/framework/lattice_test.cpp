@@ -9,7 +9,7 @@
 #include "altiplan/kit/lattice/move_rules.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::lattice_test {
 namespace {
 
 Request empty_request() {
@@ -257,4 +257,4 @@ TEST(Lattice, CellUndoesIndex) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::lattice_test

@@ -6,7 +6,7 @@
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::leg_rules_test {
 namespace {
 
 Request among_cells(RandomStream& random, double cell, int layers) {
@@ -98,4 +98,4 @@ TEST(LegRules, AskWhatLooksAtTheLegBefore) {
   EXPECT_EQ(north.refusals(), "north (2)");
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::leg_rules_test

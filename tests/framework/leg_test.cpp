@@ -9,7 +9,7 @@
 #include "altiplan/vehicle.hpp"
 #include "altiplan/wind.hpp"
 
-namespace altiplan {
+namespace altiplan::leg_test {
 namespace {
 
 constexpr double kQuarter = kPi / 2;
@@ -147,4 +147,4 @@ TEST(Wind, GroundSpeedIsThatOfTheWindTriangle) {
   EXPECT_EQ(wind.at(-1), Vec3(0, 0, 0));
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::leg_test

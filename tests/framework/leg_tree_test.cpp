@@ -7,7 +7,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::leg_tree_test {
 namespace {
 
 TEST(LegTree, GoesFromTheRootToANode) {
@@ -62,4 +62,4 @@ TEST(LegTree, KeepsItsLinksThroughRandomMoves) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::leg_tree_test

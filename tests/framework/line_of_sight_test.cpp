@@ -10,7 +10,7 @@
 #include "altiplan/random.hpp"
 #include "framework/sight_oracle.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::line_of_sight_test {
 namespace {
 
 using oracle::meets;
@@ -206,4 +206,4 @@ TEST(LineOfSight, ThroughFreeBlocksIsTheSame) {
   EXPECT_LT(seen, 55000);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::line_of_sight_test

@@ -7,7 +7,7 @@
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "framework/shape_oracle.hpp"
 
-namespace altiplan {
+namespace altiplan::many_corners_test {
 namespace {
 
 using oracle::Draw;
@@ -291,4 +291,4 @@ TEST(ManyCorners, HolesAreHeldAgainstEachOtherAndTheOutline) {
   EXPECT_EQ(with(square(990, 0, 10)), "hole 401 meets the outline at (1000, -10)");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::many_corners_test

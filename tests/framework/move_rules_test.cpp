@@ -10,7 +10,7 @@
 #include "altiplan/kit/lattice/line_of_sight.hpp"
 #include "reference/random_problem.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::move_rules_test {
 namespace {
 
 /// How often a test saw each kind of answer: one that saw a kind never has shown nothing.
@@ -255,4 +255,4 @@ TEST(Sees, AsksTheWorldForNoObstacle) {
   EXPECT_FALSE(exact.sees(std::nullopt, {0, 0, 0}, {9, 7, 1}));
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::move_rules_test

@@ -10,7 +10,7 @@
 #include "altiplan/world.hpp"
 #include "framework/shape_oracle.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::obstacle_set_test {
 namespace {
 
 using oracle::Draw;
@@ -272,4 +272,4 @@ TEST(ObstacleSet, RefusesWhatIsNoSolid) {
   EXPECT_THROW(ObstacleSet({Prism{{{0, 0}, {1, 1}}, {}, 0, 1}}), Error);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::obstacle_set_test

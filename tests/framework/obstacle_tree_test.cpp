@@ -8,7 +8,7 @@
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "framework/shape_oracle.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::obstacle_tree_test {
 namespace {
 
 using oracle::Draw;
@@ -162,4 +162,4 @@ TEST(ObstacleTree, ALimitIsDecidedAsTheDistanceDoes) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::obstacle_tree_test

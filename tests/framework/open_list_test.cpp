@@ -7,7 +7,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::open_list_test {
 namespace {
 
 TEST(OpenList, ComesOutSortedInEveryOrderOfPushes) {
@@ -62,4 +62,4 @@ TEST(OpenList, RoundingDoesNotBreakTies) {
   EXPECT_EQ(open.pop().node, 1u);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::open_list_test

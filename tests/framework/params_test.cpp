@@ -5,7 +5,7 @@
 
 #include "host/config/yaml.hpp"
 
-namespace altiplan {
+namespace altiplan::params_test {
 namespace {
 
 enum class Mode { slow, fast };
@@ -160,4 +160,4 @@ TEST(NearestName, FindsSlipsAndLeavesStrangersAlone) {
   EXPECT_EQ(nearest_name(std::string(100000, 'x'), names), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::params_test

@@ -7,7 +7,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::point_grid_test {
 namespace {
 
 std::size_t nearest_of(const std::vector<Vec3>& points, const std::vector<bool>& out,
@@ -77,4 +77,4 @@ TEST(PointGrid, AlsoOnALevelAndFarFromTheOrigin) {
 
 TEST(PointGrid, AndWhereAllPointsAreOne) { compare({{3, 3, 3}, {3, 3, 3}}, {3, 3, 3}, 1300, 1); }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::point_grid_test

@@ -7,7 +7,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::pruning_test {
 namespace {
 
 /// The 27 cells at and around one, some of them blocked.
@@ -143,4 +143,4 @@ TEST(Pruning, InSpaceKeepsWhatNoOtherWayReachesAmongBlockedCells) {
   EXPECT_LT(all_kept, 1.1 * all_needed);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::pruning_test

@@ -5,7 +5,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::route_costs_test {
 namespace {
 
 /// Two zones that count as threats, as in paper 002.
@@ -68,4 +68,4 @@ TEST(RouteCosts, NoCostIsInfiniteOrNegative) {
   EXPECT_EQ(costs.min_per_metre(), 0);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::route_costs_test

@@ -5,7 +5,7 @@
 
 #include "altiplan/check.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::sampling_test {
 namespace {
 
 TEST(Sampling, TheInformedSetIsDrawnEvenlyWithinTheBox) {
@@ -96,4 +96,4 @@ TEST(Sampling, LegsAreBentToKeepALimit) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::sampling_test

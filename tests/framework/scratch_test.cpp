@@ -8,7 +8,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::scratch_test {
 namespace {
 
 struct Small {
@@ -85,4 +85,4 @@ TEST(ScratchPool, ServesManyThreads) {
   EXPECT_EQ(shared, 0);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::scratch_test

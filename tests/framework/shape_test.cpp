@@ -5,7 +5,7 @@
 
 #include "framework/shape_oracle.hpp"
 
-namespace altiplan {
+namespace altiplan::shape_test {
 namespace {
 
 using oracle::Draw;
@@ -121,4 +121,4 @@ TEST(Shape, DepthOfALegTellsThroughFromTouching) {
   EXPECT_EQ(leg_depth(Cylinder{0, 0, 3, -kInfinity, kInfinity}, {0, 0, -7}, {0, 0, 8}), 3);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::shape_test

@@ -10,7 +10,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::star_search_test {
 namespace {
 
 /// A wall between start and goal, open above; the shortest way goes over its edges.
@@ -138,4 +138,4 @@ TEST(StarSearch, SaysWhatWasInTheWay) {
   EXPECT_TRUE(small.budget_hit);
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::star_search_test

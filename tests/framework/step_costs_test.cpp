@@ -6,7 +6,7 @@
 #include "altiplan/random.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::step_costs_test {
 namespace {
 
 Lattice lattice_of(const Vec3& cell, const Cell& counts, Neighbourhood neighbourhood,
@@ -88,4 +88,4 @@ TEST(StepCosts, ApartIsTheCheapestWayAndFallsByNoMoreThanAStepCosts) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::step_costs_test

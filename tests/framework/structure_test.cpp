@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace structure_test {
 namespace fs = std::filesystem;
 
 const fs::path kSource = altiplan::folders::source();
@@ -425,4 +425,4 @@ TEST(Structure, APluginLibraryExportsOneSymbol) {
   }
   EXPECT_GE(looked_at, 8u);
 }
-}  // namespace
+}  // namespace structure_test

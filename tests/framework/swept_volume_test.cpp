@@ -11,7 +11,7 @@
 #include "reference/random_bodies.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::oracle {
+namespace altiplan::oracle::swept_volume_test {
 namespace {
 
 constexpr double kScales[] = {1, 10, 100, 1000, 10'000};  // metres, of obstacles and legs
@@ -101,11 +101,13 @@ void compare(Kind kind, int worlds, std::uint64_t seed, const Make& make) {
         const bool by_layer = query.meets(*obstacles.layer);
         const bool by_judge =
             body_meets(std::nullopt, Leg::straight(query.a, query.b), request) != nullptr;
-        const bool is_right = count(tally, gap, by_layer) & count(tally, gap, by_judge);
-        EXPECT_TRUE(is_right) << name << ", scale " << scale << ", world " << world << ", query "
-                              << n << ": layer " << by_layer << ", judge " << by_judge << ", gap "
-                              << double(gap.low) << " to " << double(gap.high) << '\n'
-                              << query.text();
+        const bool layer_right = count(tally, gap, by_layer);
+        const bool judge_right = count(tally, gap, by_judge);
+        EXPECT_TRUE(layer_right && judge_right)
+            << name << ", scale " << scale << ", world " << world << ", query " << n << ": layer "
+            << by_layer << ", judge " << by_judge << ", gap " << double(gap.low) << " to "
+            << double(gap.high) << '\n'
+            << query.text();
       }
     }
     print(name, scale, tally);
@@ -130,4 +132,4 @@ void compare_all(int worlds, std::uint64_t seed) {
 TEST(SweptVolume, MeetsWhatTheOracleFinds) { compare_all(3, 1); }
 TEST(NightlySweptVolume, MeetsWhatTheOracleFinds) { compare_all(100, 2); }
 }  // namespace
-}  // namespace altiplan::oracle
+}  // namespace altiplan::oracle::swept_volume_test

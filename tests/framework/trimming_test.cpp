@@ -6,7 +6,7 @@
 #include "altiplan/kit/smoothing/trimming.hpp"
 #include "altiplan/random.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::trimming_test {
 namespace {
 
 std::vector<int> numbered(int count) {
@@ -68,4 +68,4 @@ TEST(Trimming, TellsWhichNodesTheLegWouldLieBetween) {
   }
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::trimming_test

@@ -9,7 +9,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::kit {
+namespace altiplan::kit::tuning_space_test {
 namespace {
 using Numbers = std::vector<double>;
 
@@ -143,4 +143,4 @@ TEST(Tuner, ScoresThatAreNoneAreRefused) {
   EXPECT_THROW(search->tell(Numbers{1, 2}), Error);  // told twice
 }
 }  // namespace
-}  // namespace altiplan::kit
+}  // namespace altiplan::kit::tuning_space_test

@@ -6,7 +6,7 @@
 #include "altiplan/ground.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::turn_check_test {
 namespace {
 
 using testing::request_in;
@@ -222,4 +222,4 @@ TEST_F(TurnCheck, ConstraintsSeeChordsAndNameLegs) {
   EXPECT_EQ(result_.violations.back().at, 1u);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::turn_check_test

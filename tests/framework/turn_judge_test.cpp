@@ -8,7 +8,7 @@
 #include "altiplan/shape.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::turn_judge_test {
 namespace {
 
 using Rules = std::vector<std::string>;
@@ -204,4 +204,4 @@ TEST(TurnJudge, APlannerThatKnowsNoLoiterCirclesSaysSo) {
   EXPECT_NE(result.message.find("trait `loiters`"), std::string::npos) << result.message;
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::turn_judge_test

@@ -9,7 +9,7 @@
 #include "altiplan/distance_field.hpp"
 #include "altiplan/error.hpp"
 
-namespace altiplan {
+namespace altiplan::voxel_grid_test {
 namespace {
 
 VoxelGrid speckled(const Cell& counts, const Vec3& cell, double share, unsigned seed) {
@@ -187,4 +187,4 @@ TEST(DistanceField, CutOffEmptyAndOutside) {
   EXPECT_EQ(DistanceField(grid).clearance({-1, 0, 0}), 0);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::voxel_grid_test

@@ -14,7 +14,7 @@
 #include "altiplan/planner.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::world_test {
 namespace {
 
 Layer shapes(std::string id, std::vector<Shape> list) {
@@ -388,4 +388,4 @@ TEST(Moving, APointHitsWhatItFliesThrough) {
   EXPECT_FALSE(hits(still, {0, 0, 0}, 0, {480, 0, 0}, 60, 0));
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::world_test

@@ -5,7 +5,7 @@
 
 #include "study/arena/arena_columns.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::arena_test {
 using namespace study;
 namespace {
 
@@ -82,4 +82,4 @@ TEST(Arena, every_outcome_has_a_status_of_its_own) {
   EXPECT_EQ(arena_status("nonsense"), 0);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::arena_test

@@ -10,7 +10,7 @@
 #include "altiplan/error.hpp"
 #include "study/workers/worker_pool.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::cgroup_test {
 using namespace study;
 namespace {
 
@@ -77,4 +77,4 @@ TEST_F(Delegated, TheKernelBoundsWhatTheProcessTreeDoesNotShow) {
   EXPECT_EQ(ended_jobs, 6U);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::cgroup_test

@@ -2,10 +2,10 @@
 // What too few runs keep from a claim, against all that such runs could give.
 #include "claim_study.hpp"
 
-namespace altiplan::study {
+namespace altiplan::study::claim_shortfall_test {
 namespace {
 
-class Shortfall : public testing::Test {
+class Shortfall : public ::testing::Test {
  protected:
   static std::string of(const std::string& that, const std::string& is,
                         const std::vector<std::size_t>& groups) {
@@ -111,4 +111,4 @@ TEST_F(Shortfall, IsSaidInWords) {
             "cannot hold: the interval of a share is too wide, even of 10000 scenarios");
 }
 }  // namespace
-}  // namespace altiplan::study
+}  // namespace altiplan::study::claim_shortfall_test

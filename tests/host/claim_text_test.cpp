@@ -6,7 +6,7 @@
 #include "study/claims/claim_pairs.hpp"
 #include "study/claims/claims.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::claim_text_test {
 using namespace study;
 namespace {
 
@@ -206,4 +206,4 @@ TEST(ClaimText, BothTextsAreChecked) {
 }
 
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::claim_text_test

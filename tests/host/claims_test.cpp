@@ -3,7 +3,7 @@
 
 #include "claim_study.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::claims_test {
 using namespace study;
 namespace {
 
@@ -251,4 +251,4 @@ TEST(Claims, AreReproducible) {
   EXPECT_NE(study.judge("mean(b.length_m / a.length_m)", "<= 1").interval->low, once.interval->low);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::claims_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace altiplan::host {
+namespace altiplan::host::clustered_test {
 using namespace study;
 namespace {
 using Sample = std::vector<double>;
@@ -140,4 +140,4 @@ TEST(Clustered, SuccessesOfManyRepetitionsCountScenarios) {
   EXPECT_FALSE(success_test(one).units.of_scenarios);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::clustered_test

@@ -6,7 +6,7 @@
 #include "study/claims/claims.hpp"
 #include "study/reproduce/reproduce.hpp"
 
-namespace altiplan::study {
+namespace altiplan::study::compare_figure_test {
 namespace {
 
 /// A pipeline p over so many scenarios: x is 1, 2, 3 …, one is always 1, late_m missing in all but
@@ -122,4 +122,4 @@ TEST(CompareFigure, AClaimsEstimateKeepsItsOwnInterval) {
   EXPECT_EQ(compare_figure(runs(20), figure, true).mark, Mark::within);
 }
 }  // namespace
-}  // namespace altiplan::study
+}  // namespace altiplan::study::compare_figure_test

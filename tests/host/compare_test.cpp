@@ -8,7 +8,7 @@
 #include "altiplan/error.hpp"
 #include "study/compare/origin.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::compare_test {
 using namespace study;
 namespace {
 
@@ -270,4 +270,4 @@ TEST(Compare, refuses_a_metric_that_no_run_has) {
   }
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::compare_test

@@ -4,7 +4,7 @@
 #include "files.hpp"
 #include "host/config/yaml.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::config_test {
 namespace {
 
 /// Everything that is wrong with the files, as the user reads it.
@@ -282,4 +282,4 @@ TEST_F(ConfigTest, ExplainsWhereAValueCameFrom) {
   EXPECT_HAS(text, "steps.0.with.past_m=[0, 0, 0] default\n");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::config_test

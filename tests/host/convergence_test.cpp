@@ -11,7 +11,7 @@
 #include "study/report/report.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::study::report {
+namespace altiplan::study::report::convergence_test {
 using namespace host;
 namespace {
 
@@ -186,4 +186,4 @@ TEST(Convergence, TheReportDrawsIt) {
   EXPECT_EQ(with[4].find("Found a route in the iteration"), std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::study::report
+}  // namespace altiplan::study::report::convergence_test

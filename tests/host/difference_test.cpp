@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace altiplan::host {
+namespace altiplan::host::difference_test {
 namespace {
 
 std::string difference(const char* first, const char* second) {
@@ -48,4 +48,4 @@ TEST(Difference, is_shown_in_a_line) {
   EXPECT_LT(text.size(), 120);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::difference_test

@@ -13,7 +13,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::export_test {
 namespace {
 
 using formats::AltitudeFrame;
@@ -397,4 +397,4 @@ TEST(ImportedRoute, RefusesTablesWithTheLine) {
   }
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::export_test

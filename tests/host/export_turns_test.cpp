@@ -17,7 +17,7 @@
 #include "host/judge/judge.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::export_turns_test {
 namespace {
 
 using Format = formats::MissionFile::Format;
@@ -367,4 +367,4 @@ TEST(ExportTurns, RandomRoutesComeBackInBothForms) {
 }
 
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::export_turns_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace altiplan::study {
+namespace altiplan::study::figure_text_test {
 namespace {
 
 JudgedClaim found(double estimate, std::optional<Interval> interval = std::nullopt,
@@ -74,4 +74,4 @@ TEST(FigureText, RangesHaveADigitMore) {
   EXPECT_EQ(read_figure("5")->range({-kInfinity, 5}), "at most 5.0");
 }
 }  // namespace
-}  // namespace altiplan::study
+}  // namespace altiplan::study::figure_text_test

@@ -13,7 +13,9 @@
 #include "host/run/pipeline.hpp"
 #include "support/folders.hpp"
 
+namespace altiplan::testing {}
 namespace altiplan::host::testing {
+using namespace altiplan::testing;  // which other files of a unit call `testing`
 
 /// A folder of the test's own with a scenario and a pipeline in it, run with the test's plugins.
 class Files : public ::testing::Test {

@@ -8,7 +8,7 @@
 #include "flight_scene.hpp"
 #include "host/flight/track_judge.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::flight_contact_test {
 namespace {
 
 constexpr double kAt = 200;  // s: when things happen
@@ -249,4 +249,4 @@ TEST(FlightContact, AMoverMeetsAVehicleThatHovers) {
   expect_judged_alike(result, scene.setup);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::flight_contact_test

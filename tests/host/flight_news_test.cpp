@@ -5,7 +5,7 @@
 
 #include "flight_scene.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::flight_news_test {
 namespace {
 
 using testing::make_smoother;
@@ -232,4 +232,4 @@ TEST(FlightNews, AnEventThatFailsKeepsTheTrack) {
   ASSERT_TRUE(result.min_separation_m);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::flight_news_test

@@ -6,7 +6,7 @@
 #include "altiplan/error.hpp"
 #include "flight_scene.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::flight_test {
 namespace {
 
 TEST(Flight, WithoutTheUnknownFollowsTheRoute) {
@@ -289,4 +289,4 @@ TEST(Flight, RefusesARouteFromElsewhere) {
   EXPECT_THROW(fly(scene.setup), Error);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::flight_test

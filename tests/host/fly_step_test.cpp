@@ -3,7 +3,7 @@
 #include "files.hpp"
 #include "host/flight/events.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::fly_step_test {
 namespace {
 
 class FlyStepTest : public testing::Files {
@@ -174,4 +174,4 @@ TEST_F(FlyStepTest, EventsThatCannotBeAreRefusedBeforeAnythingIsPlanned) {
   EXPECT_HAS(fly("fly: route").message, "event set_cells: there is no layer 'late' at that time");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::fly_step_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace altiplan::host {
+namespace altiplan::host::joined_route_test {
 namespace {
 
 using Until = formats::MissionCircle::Until;
@@ -67,4 +67,4 @@ TEST(JoinedRoute, TheLastCircleKeepsItsHeightAndItsSense) {
   EXPECT_EQ(ending_on(50, -1).unjoined, 1U) << "the circle is flown the other way";
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::joined_route_test

@@ -7,7 +7,7 @@
 #include "altiplan/random.hpp"
 #include "files.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::legs_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -107,4 +107,4 @@ TEST(LegsJson, WhatIsNoLegIsRefusedByItsPlace) {
   EXPECT_EQ(refusal(arc + end + R"("turn_deg": 36000, "radius_m": 5}])"), "accepted");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::legs_json_test

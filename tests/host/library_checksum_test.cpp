@@ -12,7 +12,7 @@
 #include "host/plugins/registry.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::library_checksum_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -174,4 +174,4 @@ TEST_F(LibraryChecksum, ARegistryNamesEachChangeOnce) {
   fs::remove_all(folder);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::library_checksum_test

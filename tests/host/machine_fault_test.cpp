@@ -7,7 +7,7 @@
 #include "host/base/sha256.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::machine_fault_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,4 +35,4 @@ TEST(MachineFault, GivesNoCheckSum) {
   EXPECT_THROW(sha256("/proc/self/mem"), MachineFault) << "there is no memory at its first byte";
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::machine_fault_test

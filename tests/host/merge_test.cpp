@@ -5,7 +5,7 @@
 #include "study/store/place.hpp"
 #include "study/workers/work_folder.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::merge_test {
 using namespace study;
 namespace {
 
@@ -161,4 +161,4 @@ TEST_F(Merge, of_many_runs_keeps_every_one) {
   EXPECT_EQ(Store(path("all.db"), StoreMode::read).keys().size(), 501);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::merge_test

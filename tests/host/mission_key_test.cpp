@@ -7,7 +7,7 @@
 #include "host/result/result_json.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::mission_key_test {
 namespace {
 
 using testing::Files;
@@ -124,4 +124,4 @@ TEST_F(MissionKey, TheSchemaTakesAMissionInPlaceOfTheEnds) {
   EXPECT_EQ(altiplan::testing::schema_disagreement(schema, cases), "");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::mission_key_test

@@ -4,7 +4,7 @@
 #include "files.hpp"
 #include "host/judge/judge.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::mission_test {
 namespace {
 
 class MissionTest : public testing::Files {
@@ -150,4 +150,4 @@ TEST_F(MissionTest, JudgesViaPointsInOrder) {
   EXPECT_FALSE(judge({}, made.request, {}).ok());
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::mission_test

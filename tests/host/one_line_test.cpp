@@ -10,7 +10,7 @@
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::one_line_test {
 using namespace study;
 namespace {
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ INSTANTIATE_TEST_SUITE_P(Built, OneLine, ::testing::Bool(), [](const auto& insta
   return instance.param ? "with_the_line" : "without_it";
 });
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::one_line_test

@@ -11,7 +11,7 @@
 #include "support/folders.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::parameter_tables_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -75,4 +75,4 @@ TEST(ParameterTables, OfBuiltInShapes) {
   expect_tables(file, wanted);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::parameter_tables_test

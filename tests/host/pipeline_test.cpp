@@ -5,7 +5,7 @@
 
 #include "files.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::pipeline_test {
 namespace {
 
 using PipelineTest = testing::Files;
@@ -284,4 +284,4 @@ TEST_F(PipelineTest, TheTraceHoldsWhatTheStepsDid) {
   EXPECT_THROW(run("steps: [{plan: told}]\n", options), Error);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::pipeline_test

@@ -9,7 +9,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/formats/input_file.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::program_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ TEST(Program, IsFoundOnThePathButNotInTheCurrentFolder) {
   ::setenv("PATH", before.c_str(), 1);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::program_test

@@ -6,7 +6,7 @@
 
 #include "study/statistics/statistics.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::rank_tests_test {
 using namespace study;
 namespace {
 using Sample = std::vector<double>;
@@ -225,4 +225,4 @@ TEST(Nemenyi, BarsJoinTwoOrMore) {
   EXPECT_TRUE(joined(Sample{1, kNone}, 5).empty());
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::rank_tests_test

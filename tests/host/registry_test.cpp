@@ -18,7 +18,7 @@
 #include "host/plugins/checksum.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::registry_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -398,4 +398,4 @@ TEST_F(RegistryTest, SearchPath) {
   }
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::registry_test

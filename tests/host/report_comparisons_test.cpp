@@ -6,10 +6,10 @@
 
 #include "report_study.hpp"
 
-namespace altiplan::study::report {
+namespace altiplan::study::report::report_comparisons_test {
 namespace {
 
-TEST(Report, ComparesOnThePairsThatBothSolved) {
+TEST(ReportComparisons, ComparesOnThePairsThatBothSolved) {
   StudyData data = study(2, 10);
   data.rows[0].outcome = "timed_out";  // p0 s0
   data.rows[3].values[1] = kNaN;       // p1 s1
@@ -29,7 +29,7 @@ TEST(Report, ComparesOnThePairsThatBothSolved) {
   EXPECT_EQ(analysis.success_comparisons.front().test.second_more, 1u);
 }
 
-TEST(Report, RatiosOrDifferencesOfAMetricAlike) {
+TEST(ReportComparisons, RatiosOrDifferencesOfAMetricAlike) {
   StudyData data = study(3, 8);
   EXPECT_TRUE(analyse(in_order(data, true), true).metrics.front().is_ratio);
   data.rows[2].values[1] = 0;  // of p2, which two of three comparisons have
@@ -40,7 +40,7 @@ TEST(Report, RatiosOrDifferencesOfAMetricAlike) {
   EXPECT_NE(files.at("tables/pairs-length_m.md").find("median difference"), std::string::npos);
 }
 
-TEST(Report, FigureAndTableNameThePipelinesInOneOrder) {
+TEST(ReportComparisons, FigureAndTableNameThePipelinesInOneOrder) {
   const auto files = written(study(2, 8, 3));
   EXPECT_NE(files.at("figures/pairs-length_m.svg").find(">p1 / p0<"), std::string::npos);
   EXPECT_NE(files.at("tables/pairs-length_m.md").find("| p1 | p0 | 1.001 |"), std::string::npos)
@@ -55,7 +55,7 @@ TEST(Report, FigureAndTableNameThePipelinesInOneOrder) {
             std::string::npos);
 }
 
-TEST(Report, SaysHowManyScenariosDiffer) {
+TEST(ReportComparisons, SaysHowManyScenariosDiffer) {
   StudyData data = study(2, 8);
   for (std::size_t at = 0; at < 10; ++at) {
     data.rows[at].values[1] = 1000;  // five scenarios are equal
@@ -67,7 +67,7 @@ TEST(Report, SaysHowManyScenariosDiffer) {
   EXPECT_NE(files.at("figures/pairs-length_m.csv").find(",8,scenarios,3,0.25,"), std::string::npos);
 }
 
-TEST(Report, AShareHasOneInterval) {
+TEST(ReportComparisons, AShareHasOneInterval) {
   StudyData data = study(2, 10, 3);
   for (RunRow& row : data.rows) {
     if (row.pipeline == 1 && (row.scenario == 4 || (row.scenario == 7 && row.repetition == 0))) {
@@ -91,7 +91,7 @@ TEST(Report, AShareHasOneInterval) {
   EXPECT_EQ(made.test.p, 0.5);
 }
 
-TEST(Report, OfTooFewScenariosThereIsNoInterval) {
+TEST(ReportComparisons, OfTooFewScenariosThereIsNoInterval) {
   StudyData data = study(2, 5, 4);
   data.file.claims = {{"longer", "median(p1.length_m / p0.length_m)", "> 1", 0.95},
                       {"harder", "median(p1.expanded / p0.expanded)", "> 1", 0.95}};
@@ -106,7 +106,7 @@ TEST(Report, OfTooFewScenariosThereIsNoInterval) {
   }
 }
 
-TEST(Report, AVerdictSaysNothingTwice) {
+TEST(ReportComparisons, AVerdictSaysNothingTwice) {
   StudyData data = study(2, 8);
   data.file.claims = {{"about", "median(p1.length_m / p0.length_m)", "0.9..1.1", 0.95}};
   const std::string page = written(data).at("index.html");
@@ -118,7 +118,7 @@ TEST(Report, AVerdictSaysNothingTwice) {
   EXPECT_NE(written(data).at("index.html").find("its claim fails"), std::string::npos);
 }
 
-TEST(Report, AMetricIsComparedOnce) {
+TEST(ReportComparisons, AMetricIsComparedOnce) {
   StudyData data = study(2, 4);
   for (const char* name : {"length_m", "expanded", "length_m", "no_such_m", "plan_time_s"}) {
     data.file.metrics.push_back({name, {}});
@@ -131,7 +131,7 @@ TEST(Report, AMetricIsComparedOnce) {
                 "plan_time_s is not compared: it varies between equal runs."}));
 }
 
-TEST(Report, AScenarioCountsOnceInTests) {
+TEST(ReportComparisons, AScenarioCountsOnceInTests) {
   const Analysis analysis = analyse(in_order(study(3, 6, 5), true), true);
   EXPECT_EQ(analysis.metrics.front().comparisons.front().effect.units.count, 6u);
   EXPECT_EQ(analysis.metrics.front().comparisons.front().used, 30u);
@@ -140,4 +140,4 @@ TEST(Report, AScenarioCountsOnceInTests) {
   EXPECT_EQ(of_one.metrics.front().ranking->blocks, 5u);
 }
 }  // namespace
-}  // namespace altiplan::study::report
+}  // namespace altiplan::study::report::report_comparisons_test

@@ -5,7 +5,7 @@
 #include "report_study.hpp"
 #include "study/report/panels.hpp"
 
-namespace altiplan::study::report {
+namespace altiplan::study::report::report_parts_test {
 namespace {
 
 std::size_t count(const std::string& text, const std::string& what) {
@@ -116,4 +116,4 @@ TEST(ReportPanels, HaveAxesOfTheirOwn) {
   EXPECT_EQ(count(written(study(2, 4)).at("figures/boxes-length_m.svg"), ">Length, m<"), 1u);
 }
 }  // namespace
-}  // namespace altiplan::study::report
+}  // namespace altiplan::study::report::report_parts_test

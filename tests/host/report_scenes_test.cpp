@@ -15,7 +15,7 @@
 #include "host/base/machine_fault.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::study::report {
+namespace altiplan::study::report::report_scenes_test {
 using namespace host;
 namespace {
 
@@ -171,4 +171,4 @@ TEST(ReportScenes, TimesAreDroppedAtAnyDepth) {
   EXPECT_EQ(json, Json::parse(R"({"a": [{"duration_s": 3}, 4], "b": {}})"));
 }
 }  // namespace
-}  // namespace altiplan::study::report
+}  // namespace altiplan::study::report::report_scenes_test

@@ -12,7 +12,7 @@
 #include "report_study.hpp"
 #include "study/figures/text.hpp"
 
-namespace altiplan::study::report {
+namespace altiplan::study::report::report_test {
 namespace {
 
 TEST(Report, OfNothing) {
@@ -207,7 +207,7 @@ TEST(Report, TakesThePlaceOfAnEarlierOne) {
   EXPECT_EQ(files_of(temp / "report"), expected);
 }
 
-TEST(ReportScenes, AreOfFailuresFirst) {
+TEST(Report, ScenesAreOfFailuresFirst) {
   StudyData data = study(2, 40);
   data.rows[71].outcome = "crashed";
   data.rows[31].outcome = "no_route";
@@ -219,4 +219,4 @@ TEST(ReportScenes, AreOfFailuresFirst) {
   EXPECT_EQ(chosen[0].size(), 2u);  // with the other pipeline's run of the pair
 }
 }  // namespace
-}  // namespace altiplan::study::report
+}  // namespace altiplan::study::report::report_test

@@ -12,7 +12,7 @@
 #include "study/figures/tables.hpp"
 #include "study/report/packed.hpp"
 
-namespace altiplan::study::report {
+namespace altiplan::study::report::report_text_test {
 namespace {
 
 using std::string;
@@ -163,4 +163,4 @@ TEST(ReportText, PacksAsZlib) {
   EXPECT_EQ(packed("aaaa").substr(0, 3), "eNp");  // 78 da: deflate, the best compression
 }
 }  // namespace
-}  // namespace altiplan::study::report
+}  // namespace altiplan::study::report::report_text_test

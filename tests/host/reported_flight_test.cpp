@@ -3,7 +3,7 @@
 #include "flight_scene.hpp"
 #include "host/flight/track_judge.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::reported_flight_test {
 namespace {
 
 FlightEvent target(const Vec3& at, double at_s) {
@@ -152,4 +152,4 @@ TEST(ReportedFlight, KeepsTheTrackOfALostVehicle) {
   EXPECT_TRUE(vehicle.is_released);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::reported_flight_test

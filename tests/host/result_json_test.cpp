@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace altiplan::host {
+namespace altiplan::host::result_json_test {
 namespace {
 
 TEST(ResultJson, BytesOfAPluginThatAreNoTextDoNotLoseTheResult) {
@@ -15,4 +15,4 @@ TEST(ResultJson, BytesOfAPluginThatAreNoTextDoNotLoseTheResult) {
   EXPECT_EQ(read["message"], "torn \xEF\xBF\xBD map, 5 \xC2\xB0");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::result_json_test

@@ -4,7 +4,7 @@
 
 #include "files.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::run_progress_test {
 namespace {
 
 class RunProgressTest : public testing::Files {
@@ -79,4 +79,4 @@ TEST_F(RunProgressTest, AFlightShowsItsTime) {
   EXPECT_EQ(progress.search.expanded, 0U) << "of the step before";
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::run_progress_test

@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace altiplan::host {
+namespace altiplan::host::run_values_test {
 using namespace study;
 namespace {
 
@@ -49,4 +49,4 @@ TEST(RunValues, NamesOfReplansAreKnown) {
       "flight.counters.…, flight.replan_counters.…, steps.ID.…, steps.ID.counters.…");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::run_values_test

@@ -6,7 +6,7 @@
 #include "host/view/picture_svg.hpp"
 #include "scene_stored.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_body_test {
 namespace {
 
 using testing::kTold;
@@ -145,4 +145,4 @@ TEST_F(SceneBody, WithoutABodyASceneSaysNothingOfIt) {
   EXPECT_FALSE(all.at("results").at(0).contains("body"));
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_body_test

@@ -4,7 +4,7 @@
 #include "host/view/scene.hpp"
 #include "scene_stored.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_heights_test {
 namespace {
 
 using testing::kTold;
@@ -107,4 +107,4 @@ TEST_F(SceneHeights, ReportsItsProgress) {
   EXPECT_NE(reported.back().find("judging "), std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_heights_test

@@ -11,7 +11,7 @@
 #include "host/view/png.hpp"
 #include "host/view/viewer_page.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_page_test {
 namespace {
 
 std::string coded(std::string_view text) {
@@ -209,4 +209,4 @@ TEST(Screenshot, TheNamedChromiumIsTheOnlyOne) {
   ::unsetenv("ALTIPLAN_CHROMIUM");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_page_test

@@ -7,7 +7,7 @@
 #include "host/view/picture_svg.hpp"
 #include "scene_stored.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_result_test {
 namespace {
 
 using testing::kTold;
@@ -287,4 +287,4 @@ TEST_F(SceneResult, ChangedFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_result_test

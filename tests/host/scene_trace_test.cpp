@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_stored.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_trace_test {
 namespace {
 
 using testing::kTold;
@@ -164,4 +164,4 @@ TEST_F(SceneTrace, WhatIsNoTraceIsSaid) {
 }
 
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_trace_test

@@ -5,7 +5,7 @@
 #include "host/view/scene_parts.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_turns_test {
 namespace {
 
 /// A straight leg, a helix of two circles and a trochoid, and a long straight leg.
@@ -53,4 +53,4 @@ TEST(SceneTurns, TheProfileRunsAlongTheCurves) {
 }
 
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_turns_test

@@ -9,7 +9,7 @@
 #include "scene_files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::scene_world_test {
 namespace {
 
 using testing::numbers;
@@ -304,4 +304,4 @@ TEST(SceneCells, ItsGroundIsNotDrawnTwice) {
   }
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::scene_world_test

@@ -14,7 +14,7 @@
 #include "support/folders.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::schema_of_files_test {
 using namespace study;
 namespace {
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ TEST_F(SchemaOfFiles, NeitherTakesAValueOutOfRangeOrAMissingKey) {
   EXPECT_EQ(altiplan::testing::schema_disagreement(schema_, cases), "");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::schema_of_files_test

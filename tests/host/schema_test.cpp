@@ -9,7 +9,7 @@
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::schema_test {
 using namespace study;
 namespace {
 
@@ -221,4 +221,4 @@ TEST(Plugins, EachLibraryIsTriedInAProcessOfItsOwn) {
   }));
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::schema_test

@@ -11,7 +11,7 @@
 #include "support/files.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::series_colors_test {
 namespace {
 
 using Eigen::Matrix3d;
@@ -103,4 +103,4 @@ TEST(SeriesColors, AreTheSameInThePage) {
   EXPECT_NE(script.find("light: [" + light + "],\n  dark: [" + dark + "]"), std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::series_colors_test

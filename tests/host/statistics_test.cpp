@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-namespace altiplan::host {
+namespace altiplan::host::statistics_test {
 using namespace study;
 namespace {
 using Sample = std::vector<double>;
@@ -284,4 +284,4 @@ TEST(Bootstrap, CoversAsOftenAsItSays) {
   EXPECT_NEAR(covered, 90, 9);  // 3 deviations
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::statistics_test

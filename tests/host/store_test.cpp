@@ -12,7 +12,7 @@
 #include "study/store/place.hpp"
 #include "study/store/sqlite.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::store_test {
 using namespace study;
 namespace {
 
@@ -262,4 +262,4 @@ TEST_F(StoreTest, DataOfSeveralShards) {
   EXPECT_THROW(load_study_data({file_.string(), other.string()}), Error);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::store_test

@@ -11,7 +11,9 @@
 #include "altiplan/error.hpp"
 #include "study/store/store.hpp"
 
+namespace altiplan::testing {}
 namespace altiplan::host::testing {
+using namespace altiplan::testing;  // which other files of a unit call `testing`
 using namespace study;
 
 /// Makes stores of a study with two pipelines and two scenarios in a folder of the test's own.

@@ -8,7 +8,7 @@
 #include "host/config/yaml.hpp"
 #include "study/plan/study_grid.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::study_plan_test {
 using namespace study;
 namespace {
 
@@ -214,4 +214,4 @@ TEST_F(StudyPlanTest, SaysWhatIsWrongAndWhere) {
              "this is a scenario, expected a pipeline");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::study_plan_test

@@ -8,7 +8,7 @@
 #include "host/result/result_json.hpp"
 #include "support/instrumented.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::study_worker_test {
 using namespace study;
 namespace {
 
@@ -149,4 +149,4 @@ TEST_F(StudyWorker, EveryEnding) {
             "[31m\xEF\xBF\xBD two");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::study_worker_test

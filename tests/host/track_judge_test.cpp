@@ -8,7 +8,7 @@
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::track_judge_test {
 namespace {
 
 Layer layer(const std::string& id, Shape shape, bool known = true) {
@@ -163,4 +163,4 @@ TEST(TrackJudge, TheLengthOfTheWhole) {
   EXPECT_EQ(rules(judge_track(straight(), all)), Names{"route_length"});
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::track_judge_test

@@ -7,7 +7,7 @@
 #include "support/support.hpp"
 #include "support/walks.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::track_radius_test {
 namespace {
 
 double radius_of(const Polyline& track) { return track_radius(track, {}).radius_m.value(); }
@@ -80,4 +80,4 @@ TEST(TrackRadius, ATurnOnTheSpotHasNone) {
   EXPECT_NEAR(track_radius(track, vehicle).radius_m.value(), 250, 1e-3);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::track_radius_test

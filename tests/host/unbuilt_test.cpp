@@ -13,7 +13,7 @@
 #include "host/plugins/registry.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::unbuilt_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -107,4 +107,4 @@ TEST_F(UnbuiltTest, WithoutAListNothingCanBeBuilt) {
   EXPECT_EQ(registry.offering("planner", "jps"), nullptr);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::unbuilt_test

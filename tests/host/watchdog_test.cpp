@@ -5,7 +5,7 @@
 
 #include "files.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::watchdog_test {
 namespace {
 
 class WatchdogTest : public testing::Files {
@@ -78,4 +78,4 @@ TEST_F(WatchdogTest, APilotThatNeverStopsEndsTheProcess) {
               ::testing::ExitedWithCode(1), "^told solved; told_pilot failed; all failed");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::watchdog_test

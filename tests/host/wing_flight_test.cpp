@@ -7,7 +7,7 @@
 #include "host/flight/track_judge.hpp"
 #include "host/flight/wing_guidance.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::wing_flight_test {
 namespace {
 
 constexpr double kAirspeed = 25;
@@ -269,4 +269,4 @@ TEST(FollowError, QuantileIsExceededForTheRestOfTheTime) {
   EXPECT_EQ(error.height_max(), 2);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::wing_flight_test

@@ -11,17 +11,18 @@
 #include "study/workers/job_record.hpp"
 #include "worker_pool_fixture.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::worker_pool_files_test {
 using namespace study;
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Reuse, Faults, ::testing::Values(1, 8));
+using FileFaults = Faults;
+INSTANTIATE_TEST_SUITE_P(Reuse, FileFaults, ::testing::Values(1, 8));
 
-TEST_P(Faults, ClosesAllDescriptors) {
+TEST_P(FileFaults, ClosesAllDescriptors) {
   EXPECT_EQ(among_others([](const Job&) { ::close_range(0, ~0U, 0); }).how, Ending::done);
 }
 
-TEST_P(Faults, UsesUpAllDescriptors) {
+TEST_P(FileFaults, UsesUpAllDescriptors) {
   const Ended ended = among_others([](const Job&) {
     while (::open("/dev/null", O_RDONLY) >= 0) {
     }
@@ -29,7 +30,7 @@ TEST_P(Faults, UsesUpAllDescriptors) {
   EXPECT_EQ(ended.how, Ending::done);
 }
 
-TEST_P(Faults, DamagesItsRecords) {
+TEST_P(FileFaults, DamagesItsRecords) {
   const Ended ended = among_others([&](const Job&) {
     for (const fs::directory_entry& file : fs::directory_iterator(path_)) {
       if (file.path().extension() == ".records") {
@@ -42,7 +43,7 @@ TEST_P(Faults, DamagesItsRecords) {
   EXPECT_EQ(ended.how, Ending::done);
 }
 
-TEST_P(Faults, DamagesItsRecordAlways) {
+TEST_P(FileFaults, DamagesItsRecordAlways) {
   const Ended ended = among_others([&](const Job& job) {
     fs::path own = job.crash_report;
     std::ofstream(own.replace_extension(".records"), std::ios::app) << "garbage";
@@ -50,7 +51,7 @@ TEST_P(Faults, DamagesItsRecordAlways) {
   EXPECT_EQ(ended.how, Ending::garbled);
 }
 
-TEST_P(Faults, RemovesItsRecords) {
+TEST_P(FileFaults, RemovesItsRecords) {
   const Ended ended = among_others([&](const Job& job) {
     fs::path own = job.crash_report;
     fs::remove(own.replace_extension(".records"));
@@ -58,7 +59,7 @@ TEST_P(Faults, RemovesItsRecords) {
   EXPECT_EQ(ended.how, Ending::done);
 }
 
-TEST_P(Faults, DescriptorsOfTheParentAreClosed) {
+TEST_P(FileFaults, DescriptorsOfTheParentAreClosed) {
   const int secret = ::open("/dev/zero", O_RDONLY);  // not close-on-exec
   const auto all = run(6, [&](const Job&) {
     return std::to_string(::fcntl(secret, F_GETFD)) + std::to_string(::fcntl(secret + 1, F_GETFD));
@@ -69,7 +70,7 @@ TEST_P(Faults, DescriptorsOfTheParentAreClosed) {
   }
 }
 
-TEST_P(Faults, NoDescriptorIsLeft) {
+TEST_P(FileFaults, NoDescriptorIsLeft) {
   const auto open_files = [] {
     return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
   };
@@ -111,4 +112,4 @@ TEST(JobRecord, EveryCutAndEveryFlippedByteIsTold) {
   EXPECT_EQ(taken.left_behind, 2);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::worker_pool_files_test

@@ -16,12 +16,13 @@
 #include "support/instrumented.hpp"
 #include "worker_pool_fixture.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::worker_pool_limits_test {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Reuse, Faults, ::testing::Values(1, 8));
+using LimitFaults = Faults;
+INSTANTIATE_TEST_SUITE_P(Reuse, LimitFaults, ::testing::Values(1, 8));
 
-TEST_P(Faults, Hangs) {
+TEST_P(LimitFaults, Hangs) {
   options_.limits.wall_s = 0.3;
   const auto began = std::chrono::steady_clock::now();
   const Ended ended = among_others([](const Job&) { sleep_s(1000); });
@@ -30,12 +31,12 @@ TEST_P(Faults, Hangs) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
 }
 
-TEST_P(Faults, StopsItself) {
+TEST_P(LimitFaults, StopsItself) {
   options_.limits.wall_s = 0.3;
   EXPECT_EQ(among_others([](const Job&) { ::raise(SIGSTOP); }).how, Ending::wall_limit);
 }
 
-TEST_P(Faults, HangsAndIgnoresAllSignals) {
+TEST_P(LimitFaults, HangsAndIgnoresAllSignals) {
   options_.limits.wall_s = 0.3;
   const Ended ended = among_others([](const Job&) {
     sigset_t all;
@@ -46,14 +47,14 @@ TEST_P(Faults, HangsAndIgnoresAllSignals) {
   EXPECT_EQ(ended.how, Ending::wall_limit);
 }
 
-TEST_P(Faults, Spins) {
+TEST_P(LimitFaults, Spins) {
   options_.limits.cpu_s = 0.3;
   const Ended ended = among_others([](const Job&) { spin(); });
   EXPECT_EQ(ended.how, Ending::cpu_limit);
   EXPECT_NEAR(ended.cpu_s, 0.4, 0.2);
 }
 
-TEST_P(Faults, ChildrenSpinInItsPlace) {
+TEST_P(LimitFaults, ChildrenSpinInItsPlace) {
   options_.limits.cpu_s = 0.4;
   const Ended ended = among_others([](const Job&) {
     for (int i = 0; i < 4; ++i) {
@@ -71,7 +72,7 @@ TEST_P(Faults, ChildrenSpinInItsPlace) {
   EXPECT_GT(ended.cpu_s, 0.35);
 }
 
-TEST_P(Faults, LimitsAreForEachJob) {
+TEST_P(LimitFaults, LimitsAreForEachJob) {
   options_.limits.wall_s = 0.4;
   options_.jobs = 1;
   for (const auto& [job, ended] : run(12, [](const Job&) {
@@ -91,7 +92,7 @@ TEST_P(Faults, LimitsAreForEachJob) {
   }
 }
 
-TEST_P(Faults, MemoryWithoutBound) {
+TEST_P(LimitFaults, MemoryWithoutBound) {
   options_.limits.memory_mb = 100;
   const Ended ended = among_others([](const Job&) { hoard(); });
   EXPECT_EQ(ended.how, Ending::memory_limit);
@@ -99,7 +100,7 @@ TEST_P(Faults, MemoryWithoutBound) {
   EXPECT_LT(ended.peak_memory_mb, 400);
 }
 
-TEST_P(Faults, MemoryOfChildrenCounts) {
+TEST_P(LimitFaults, MemoryOfChildrenCounts) {
   options_.limits.memory_mb = 100;
   const Ended ended = among_others([](const Job&) {
     for (int i = 0; i < 6; ++i) {
@@ -113,7 +114,7 @@ TEST_P(Faults, MemoryOfChildrenCounts) {
   EXPECT_EQ(ended.how, Ending::memory_limit);
 }
 
-TEST_P(Faults, MemoryThatIsSharedCountsOnce) {
+TEST_P(LimitFaults, MemoryThatIsSharedCountsOnce) {
   if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
@@ -133,7 +134,7 @@ TEST_P(Faults, MemoryThatIsSharedCountsOnce) {
   EXPECT_NEAR(ended.peak_memory_mb, 80, 30);
 }
 
-TEST_P(Faults, ParentsMemoryDoesNotCount) {
+TEST_P(LimitFaults, ParentsMemoryDoesNotCount) {
   if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
@@ -151,7 +152,7 @@ TEST_P(Faults, ParentsMemoryDoesNotCount) {
   EXPECT_NEAR(ended.peak_memory_mb, 60, 10);
 }
 
-TEST_P(Faults, PeakOfAShortJob) {
+TEST_P(LimitFaults, PeakOfAShortJob) {
   if (altiplan::testing::kInstrumented) {
     GTEST_SKIP() << "a sanitizer takes memory of its own";
   }
@@ -167,7 +168,7 @@ TEST_P(Faults, PeakOfAShortJob) {
   }
 }
 
-TEST_P(Faults, ForkBomb) {
+TEST_P(LimitFaults, ForkBomb) {
   options_.limits.wall_s = 1;
   const fs::path count = path_.string() + ".count";
   std::ofstream(count).close();
@@ -186,7 +187,7 @@ TEST_P(Faults, ForkBomb) {
   fs::remove(count);
 }
 
-TEST_P(Faults, ForkBombBeyondTheLimit) {
+TEST_P(LimitFaults, ForkBombBeyondTheLimit) {
   options_.limits.processes = 100;
   const Ended ended = among_others([&](const Job&) {
     for (int depth = 0; depth < 300; ++depth) {
@@ -199,7 +200,7 @@ TEST_P(Faults, ForkBombBeyondTheLimit) {
   EXPECT_EQ(ended.how, Ending::process_limit);
 }
 
-TEST_P(Faults, RecordIsTooLarge) {
+TEST_P(LimitFaults, RecordIsTooLarge) {
   options_.limits.file_mb = 1;
   const auto all =
       run(6, [](const Job& job) { return std::string(job.index == 3 ? 1 << 21 : 5, 'x'); });
@@ -208,7 +209,7 @@ TEST_P(Faults, RecordIsTooLarge) {
   }
 }
 
-TEST_P(Faults, FileIsTooLarge) {
+TEST_P(LimitFaults, FileIsTooLarge) {
   options_.limits.file_mb = 1;
   const Ended ended = among_others([&](const Job& job) {
     const int file = ::open(job.scratch.c_str(), O_WRONLY | O_CREAT, 0666);
@@ -219,7 +220,7 @@ TEST_P(Faults, FileIsTooLarge) {
   EXPECT_EQ(ended.how, Ending::too_large);
 }
 
-TEST_P(Faults, FloodsStderr) {
+TEST_P(LimitFaults, FloodsStderr) {
   options_.limits.wall_s = 0.5;
   const Ended ended = among_others([](const Job&) {
     while (true) {
@@ -231,4 +232,4 @@ TEST_P(Faults, FloodsStderr) {
   EXPECT_NE(ended.output.find("and on and on"), std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::worker_pool_limits_test

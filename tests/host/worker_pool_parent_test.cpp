@@ -15,10 +15,11 @@
 #include "support/instrumented.hpp"
 #include "worker_pool_fixture.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::worker_pool_parent_test {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Reuse, Faults, ::testing::Values(1, 8));
+using ParentFaults = Faults;
+INSTANTIATE_TEST_SUITE_P(Reuse, ParentFaults, ::testing::Values(1, 8));
 
 TEST_F(WorkerPoolTest, FullDiskIsAnErrorOfTheStudy) {
   WorkFolder folder(path_);
@@ -204,7 +205,7 @@ void kill_parent(const fs::path& path, const PoolOptions& options, double after_
   ::waitpid(parent, nullptr, 0);
 }
 
-TEST_P(Faults, NothingOutlivesAKilledParent) {
+TEST_P(ParentFaults, NothingOutlivesAKilledParent) {
   kill_parent(path_, options_, 0.3, [](const Job&) -> std::string {
     if (::fork() == 0) {
       ::setsid();
@@ -222,7 +223,7 @@ TEST_P(Faults, NothingOutlivesAKilledParent) {
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
 }
 
-TEST_P(Faults, RecordsOfAKilledParentAreFound) {
+TEST_P(ParentFaults, RecordsOfAKilledParentAreFound) {
   options_.keep_every_s = 1000;  // it stores nothing
   options_.jobs = 2;
   kill_parent(path_, options_, 0.5, [](const Job& job) {
@@ -275,4 +276,4 @@ TEST_F(WorkerPoolTest, MemoryStaysFlat) {
   EXPECT_LT(use_of(::getpid()).memory_mb, before + 20);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::worker_pool_parent_test

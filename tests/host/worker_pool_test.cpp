@@ -15,7 +15,7 @@
 
 #include "worker_pool_fixture.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::worker_pool_test {
 namespace {
 
 INSTANTIATE_TEST_SUITE_P(Reuse, Faults, ::testing::Values(1, 8));
@@ -184,4 +184,4 @@ TEST_P(Faults, ManyCrashesAmongMany) {
   }
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::worker_pool_test

@@ -12,7 +12,7 @@
 #include "host/config/yaml.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::yaml_edit_test {
 namespace {
 
 std::string edited(const std::string& text, const std::vector<std::string>& set) {
@@ -218,4 +218,4 @@ TEST(YamlEdit, EveryValueOfEveryConfigurationCanBeChangedAndNothingElseIs) {
   EXPECT_LT(refused, changed / 50);
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::yaml_edit_test

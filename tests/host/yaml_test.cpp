@@ -9,7 +9,7 @@
 
 #include "altiplan/error.hpp"
 
-namespace altiplan::host {
+namespace altiplan::host::yaml_test {
 namespace {
 
 /// What the reader says of `text`, a problem a line ("LINE:COLUMN key: message"); "" if it reads.
@@ -42,7 +42,7 @@ std::string repeated(const std::string& text, std::size_t times) {
 }
 
 #define EXPECT_PROBLEM(text, start) \
-  EXPECT_PRED2(starts_with, problems_of(text), start) << "for " << testing::PrintToString(text)
+  EXPECT_PRED2(starts_with, problems_of(text), start) << "for " << ::testing::PrintToString(text)
 
 TEST(Yaml, KeepsTextAndPlaces) {
   const Value value =
@@ -194,7 +194,7 @@ TEST(Yaml, FilesThatCannotBeRead) {
     }
     return "";
   };
-  const std::filesystem::path folder = testing::TempDir();
+  const std::filesystem::path folder = ::testing::TempDir();
   EXPECT_EQ(message(folder / "no_such_file.yaml"), "there is no such file");
   EXPECT_EQ(message(folder), "is a folder, expected a file");
   const std::filesystem::path large = folder / "altiplan_large.yaml";
@@ -238,4 +238,4 @@ TEST(Yaml, TheLocaleChangesNothing) {
   EXPECT_EQ(problems, "1235:1 a: this key occurs twice in one map, first on line 1234");
 }
 }  // namespace
-}  // namespace altiplan::host
+}  // namespace altiplan::host::yaml_test

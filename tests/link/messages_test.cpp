@@ -5,7 +5,7 @@
 #include "link/packet.hpp"
 #include "link/random_message.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::messages_test {
 namespace {
 
 /// What other implementations of common.xml and ardupilotmega.xml have.
@@ -131,4 +131,4 @@ TEST(LinkMessages, ZerosAtTheEndAreNotSent) {
   EXPECT_EQ(packet_bytes(count, {1, 1}, 0).size(), 12U + 3U);
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::messages_test

@@ -5,7 +5,7 @@
 
 #include "link/lossy_vehicle.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::mission_transfer_test {
 namespace {
 
 using State = MissionTransfer::State;
@@ -267,4 +267,4 @@ TEST(LinkMissionTransfer, MessagesAreSentAgainAsTheGuideSays) {
   EXPECT_TRUE(std::holds_alternative<MissionRequestList>(begun_again[0]));
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::mission_transfer_test

@@ -6,7 +6,7 @@
 #include "link/checksum.hpp"
 #include "link/random_message.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::packet_test {
 namespace {
 
 std::vector<Packet> all_of(Parser& parser) {
@@ -165,4 +165,4 @@ TEST(LinkPacket, AnIncompletePacketDelaysNoOther) {
   EXPECT_EQ(all_of(parser).size(), 1U);
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::packet_test

@@ -10,7 +10,7 @@
 #include "link/lossy_vehicle.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::plan_transfer_test {
 namespace {
 
 using host::Command;
@@ -136,4 +136,4 @@ TEST(LinkPlanTransfer, MissionsOfOtherProgramsComeBackEqual) {
   EXPECT_GT(missions, 0U);
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::plan_transfer_test

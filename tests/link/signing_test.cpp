@@ -9,7 +9,7 @@
 #include "link/packet.hpp"
 #include "support/folders.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::signing_test {
 namespace {
 
 constexpr SigningTime kNow = 3'700'000'000'000;
@@ -25,7 +25,7 @@ Signer signer_at(const SigningTime& time, char key = 'k', std::uint8_t link_id =
   return Signer(key_of(key), link_id, [&time] { return time; });
 }
 
-class LinkSigning : public testing::Test {
+class LinkSigning : public ::testing::Test {
  protected:
   std::string sent(Signer* signer) {
     return packet_bytes(Heartbeat(), {1, 1}, sequence_++, signer);
@@ -129,7 +129,7 @@ TEST(LinkSigningBytes, ASignatureIsTheOneOfAnotherImplementation) {
 }
 
 TEST(LinkSigningKey, IsAFileOf32Bytes) {
-  const std::string file = testing::TempDir() + "altiplan_signing_key";
+  const std::string file = ::testing::TempDir() + "altiplan_signing_key";
   for (const std::size_t size : {std::size_t{31}, std::size_t{33}, std::size_t{32}}) {
     std::ofstream(file, std::ios::binary) << std::string(size, 'k');
     if (size == 32) {
@@ -141,4 +141,4 @@ TEST(LinkSigningKey, IsAFileOf32Bytes) {
   EXPECT_THROW(read_signing_key(file + ".none"), Error);
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::signing_test

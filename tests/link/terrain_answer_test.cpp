@@ -8,7 +8,7 @@
 
 #include "altiplan/ground.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::terrain_answer_test {
 namespace {
 
 /// Ground that rises by a metre in ten to the east and two in ten to the north, up to 5 km away.
@@ -72,4 +72,4 @@ TEST(TerrainAnswer, LeavesOutWhereTheWorldHasNoGround) {
   EXPECT_TRUE(terrain_answer(request(1), World()).empty());
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::terrain_answer_test

@@ -12,7 +12,7 @@
 
 #include "link/link.hpp"
 
-namespace altiplan::link {
+namespace altiplan::link::transport_test {
 namespace {
 
 constexpr Time kSoon{2000};
@@ -140,4 +140,4 @@ TEST(LinkTransport, ASerialLineIsRaw) {
   ::close(terminal);
 }
 }  // namespace
-}  // namespace altiplan::link
+}  // namespace altiplan::link::transport_test

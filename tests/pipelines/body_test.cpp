@@ -5,7 +5,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::body_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -75,4 +75,4 @@ TEST(SlungLoad, PassesBelowTheBridgeUnlessItsLineIsTooLong) {
   EXPECT_EQ(status_of(kShortRrtStar, with_sphere(load, "3.47")), "no_route");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::body_test

@@ -7,7 +7,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::every_pipeline_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -45,4 +45,4 @@ TEST_P(EveryPipeline, IsSolved) {
 INSTANTIATE_TEST_SUITE_P(Configs, EveryPipeline, ::testing::ValuesIn(pipelines()),
                          [](const auto& instance) { return instance.param.stem().string(); });
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::every_pipeline_test

@@ -6,7 +6,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::finnish_zones_test {
 namespace {
 
 host::Json flown_over_finland(const TempFolder& folder, const std::string& data,
@@ -50,4 +50,4 @@ TEST(FinnishZones, ARouteGoesAroundThem) {
             1.05 * low.at("metrics").at("length_m").get<double>());
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::finnish_zones_test

@@ -5,7 +5,7 @@
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::fitted_terrain_test {
 namespace {
 
 /// Kilometres: x, y, height, half widths.
@@ -82,4 +82,4 @@ TEST(FittedTerrain, SmoothersShortenAndStaySound) {
   EXPECT_LT(length(route), 70.9e3);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::fitted_terrain_test

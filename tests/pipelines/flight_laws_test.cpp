@@ -6,7 +6,7 @@
 #include "reference/moving_worlds.hpp"
 #include "support/instrumented.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::flight_laws_test {
 namespace {
 
 constexpr double kMaxTurnDeg = 30;
@@ -145,4 +145,4 @@ TEST(FlightLaws, MirroredMoversGiveMirroredFlights) {
   EXPECT_GT(flown, 25);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::flight_laws_test

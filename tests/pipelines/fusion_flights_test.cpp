@@ -9,7 +9,7 @@
 #include "host/run/pipeline.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::fusion_flights_test {
 namespace {
 
 /// Length flown over length of the route.
@@ -95,4 +95,4 @@ TEST(NightlyFusionFlights, FortyFivePeaks) {
   EXPECT_TRUE(tally.longer.empty());
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::fusion_flights_test

@@ -12,7 +12,7 @@
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::judge_every_layer_test {
 namespace {
 
 using Made = std::shared_ptr<const Environment>;
@@ -372,4 +372,4 @@ TEST(LawsOfEveryLayer, RasterLeavesNoTouchedCellFree) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::judge_every_layer_test

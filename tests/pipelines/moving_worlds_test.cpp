@@ -10,7 +10,7 @@
 #include "reference/escape_cause.hpp"
 #include "reference/moving_worlds.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::moving_worlds_test {
 namespace {
 
 struct Tally {
@@ -188,4 +188,4 @@ TEST(MovingWorlds, AreAsTheyAreSaidToBe) {
   EXPECT_EQ(least, 1U);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::moving_worlds_test

@@ -6,7 +6,7 @@
 #include "host/mission/mission.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::paper_terrains_test {
 namespace {
 
 /// The problem on the terrain of that seed.
@@ -109,4 +109,4 @@ void compare_manhattan(int from, int to) {
 TEST(PaperTerrains, WeightedManhattanIsEuclidean) { compare_manhattan(0, 10); }
 TEST(NightlyPaperTerrains, WeightedManhattanIsEuclidean) { compare_manhattan(100, 200); }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::paper_terrains_test

@@ -9,7 +9,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::profiles_test {
 namespace {
 namespace fs = std::filesystem;
 using host::Json;
@@ -86,4 +86,4 @@ TEST_P(Profiles, AreLeastWhereTheJudgeMeasured) {
 INSTANTIATE_TEST_SUITE_P(Configs, Profiles, ::testing::ValuesIn(pipelines()),
                          [](const auto& instance) { return instance.param.stem().string(); });
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::profiles_test

@@ -11,7 +11,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::real_cities_test {
 namespace {
 
 constexpr double kRadius = 1.5;
@@ -122,4 +122,4 @@ INSTANTIATE_TEST_SUITE_P(City, RealCities, ::testing::ValuesIn(cases()), [](cons
   return std::string(instance.param.city.name) + "_" + instance.param.plan.planner;
 });
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::real_cities_test

@@ -9,7 +9,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::real_terrain_test {
 namespace {
 
 constexpr double kGroundClearance = 100;
@@ -95,4 +95,4 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
 INSTANTIATE_TEST_SUITE_P(Dem, RealTerrain, ::testing::ValuesIn(kCases),
                          [](const auto& instance) { return instance.param.name; });
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::real_terrain_test

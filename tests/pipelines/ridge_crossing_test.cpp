@@ -9,7 +9,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::ridge_crossing_test {
 namespace {
 
 using host::Json;
@@ -165,4 +165,4 @@ TEST(RidgeCrossing, OneSeedGivesOneResult) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::ridge_crossing_test

@@ -10,7 +10,7 @@
 #include "reference/pop_ups.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_pop_ups_test {
 namespace {
 
 constexpr int kCases = 100;
@@ -72,4 +72,4 @@ TEST(RrtPopUps, RoutesStaySafeAndFewerNodesAreAddedThanAfresh) {
   EXPECT_LE(double(nodes_added("reconnect")), 0.6 * afresh);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_pop_ups_test

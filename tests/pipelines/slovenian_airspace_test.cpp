@@ -8,7 +8,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::slovenian_airspace_test {
 namespace {
 
 host::Json flown(const TempFolder& folder, const std::string& data, const std::string& planner,
@@ -46,4 +46,4 @@ TEST(SlovenianAirspace, TwoPlannersGoAroundAndBelow) {
   EXPECT_NE(high.dump().find("zones"), std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::slovenian_airspace_test

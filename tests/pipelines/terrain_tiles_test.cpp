@@ -10,7 +10,7 @@
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::terrain_tiles_test {
 namespace {
 
 using testing::make_environment;
@@ -199,4 +199,4 @@ TEST_F(Tiles, NoRouteLeavesTheGround) {
   EXPECT_LT(farthest, 3000);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::terrain_tiles_test

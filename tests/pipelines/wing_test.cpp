@@ -6,7 +6,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::wing_test {
 namespace {
 
 class Wing : public ::testing::Test {
@@ -62,4 +62,4 @@ TEST(WingStar, LeavesOneLoiterCircleAndJoinsTheOther) {
   EXPECT_LT(ran.json["metrics"]["duration_s"], 1000);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::wing_test

@@ -4,7 +4,7 @@
 
 #include "reference/isometry.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::astar_metamorphic_test {
 namespace {
 
 /// By cell and heading, which turns need for the shortest route.
@@ -267,4 +267,4 @@ TEST(AStarMetamorphic, MoreBudgetIsNeverWorse) {
   EXPECT_GT(grown, 30);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::astar_metamorphic_test

@@ -5,7 +5,7 @@
 
 #include "reference/random_problem.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::astar_oracle_test {
 namespace {
 
 std::int64_t expanded(const PlanResult& result) {
@@ -360,4 +360,4 @@ TEST(NightlyAStarOracle, ByCellAndHeadingEqualsDijkstraUnderTurnLimits) {
   EXPECT_GT(tally.solved, 2000);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::astar_oracle_test

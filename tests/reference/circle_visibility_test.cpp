@@ -5,7 +5,7 @@
 
 #include "reference/visibility_graph.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::circle_visibility_test {
 namespace {
 
 TEST(CircleVisibility, LengthsKnownByHand) {
@@ -154,4 +154,4 @@ TEST(CircleVisibility, KeepsItsLaws) {
   EXPECT_GT(bent, 20);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::circle_visibility_test

@@ -6,7 +6,7 @@
 #include "reference/plain_colonies.hpp"
 #include "reference/random_levels.hpp"
 
-namespace altiplan {
+namespace altiplan::colony_oracle_test {
 namespace {
 
 using reference::PlainColony;
@@ -131,4 +131,4 @@ TEST(ColonyOracle, ImprovedAntColonyOverManyIterations) {
   EXPECT_GE(compare("improved_ant_colony", settings, 16, 5, 8, 700, plain), 5);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::colony_oracle_test

@@ -4,7 +4,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::drawn_worlds_test {
 namespace {
 
 using Levels = std::vector<std::string>;
@@ -214,4 +214,4 @@ TEST(DrawnWorlds, AKnightsMoveGoesStraightThenAslant) {
                     "S##"})});
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::drawn_worlds_test

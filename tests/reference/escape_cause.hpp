@@ -39,7 +39,7 @@ struct Look {
   std::size_t step = 0;  ///< of the track
   double time_s = 0;
   Vec3 at{0, 0, 0};
-  std::shared_ptr<const Scene> known;  ///< shared with the look before where there are no news
+  std::shared_ptr<const KnownScene> known;  ///< shared with the look before where there are no news
   std::shared_ptr<const std::set<std::string>> ids;
 };
 
@@ -135,18 +135,18 @@ class CauseSearch {
     if (before != nullptr && ids == *before->ids) {
       return {step, time, at, before->known, before->ids};
     }
-    return {step, time, at, std::make_shared<const Scene>(scene_of(ids)),
+    return {step, time, at, std::make_shared<const KnownScene>(scene_of(ids)),
             std::make_shared<const std::set<std::string>>(ids)};
   }
 
-  Scene scene_of(const std::set<std::string>& ids) const {
+  KnownScene scene_of(const std::set<std::string>& ids) const {
     World world;
     for (const Layer& layer : setup_.truth.layers()) {
       if (ids.contains(layer.id)) {
         world = world.with(layer);
       }
     }
-    Scene scene(std::move(world), setup_.request);
+    KnownScene scene(std::move(world), setup_.request);
     for (const MovingObstacle& moving : setup_.truth.moving()) {
       if (ids.contains(moving.id)) {
         const auto& sphere = std::get<Sphere>(moving.shape);
@@ -157,14 +157,14 @@ class CauseSearch {
     return scene;
   }
 
-  Way escape(const Look& from, const Scene& known, const Lattice& lattice) const {
+  Way escape(const Look& from, const KnownScene& known, const Lattice& lattice) const {
     const Vehicle& vehicle = setup_.request.vehicle;
     const double horizon = 2 * vehicle.sensing_m / vehicle.speed_mps;
     return EscapeSearch(known, setup_.request.goal, lattice)
         .escape(from.time_s, from.at, from.time_s + horizon);
   }
   /// On finer lattices too, as far as they are soon searched.
-  Way escape_finely(const Look& from, const Scene& known) const {
+  Way escape_finely(const Look& from, const KnownScene& known) const {
     Lattice lattice = lattice_;
     Way way = escape(from, known, lattice);
     for (int i = 0; i < 2 && !way.found(); ++i) {
@@ -184,7 +184,7 @@ class CauseSearch {
       all.insert(moving.id);
     }
     const Request& request = setup_.request;
-    const Scene scene = scene_of(all);
+    const KnownScene scene = scene_of(all);
     const double direct = scene.min_time(request.start.position, request.goal.position);
     Lattice lattice = lattice_;
     Way way;

@@ -50,7 +50,7 @@ struct Way {
 /// good sees all of it fly by, and may stay where it is then.
 class EscapeSearch {
  public:
-  EscapeSearch(const Scene& scene, const Goal& goal, const Lattice& lattice)
+  EscapeSearch(const KnownScene& scene, const Goal& goal, const Lattice& lattice)
       : scene_(scene), goal_(goal), lattice_(lattice) {
     const double h = scene.speed * lattice.step_s / lattice.cells;
     const int up = scene.level_m ? 0 : lattice.cells;
@@ -219,7 +219,7 @@ class EscapeSearch {
     return legs;
   }
 
-  const Scene& scene_;
+  const KnownScene& scene_;
   Goal goal_;
   Lattice lattice_;
   std::vector<Move> moves_;

@@ -7,7 +7,7 @@
 #include "reference/escape_cause.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::escape_search_test {
 namespace {
 
 constexpr double kSpeed = 30;
@@ -27,8 +27,8 @@ Request problem(bool level) {
   return request;
 }
 
-Scene scene_with(std::vector<Mover> movers, bool level = true) {
-  Scene scene(World(), problem(level));
+KnownScene scene_with(std::vector<Mover> movers, bool level = true) {
+  KnownScene scene(World(), problem(level));
   scene.movers = std::move(movers);
   return scene;
 }
@@ -45,7 +45,7 @@ std::vector<Mover> ring(int count, double distance, double radius, double speed,
 }
 
 /// Nothing comes to the end of the way any more, unless that is the goal.
-void expect_safe_end(const Way& way, const Scene& scene) {
+void expect_safe_end(const Way& way, const KnownScene& scene) {
   const auto& [time, at] = way.legs.back();
   for (const Mover& mover : scene.movers) {
     const MovingObstacle obstacle{"m", Sphere{mover.at_0, mover.radius}, mover.velocity, 0, true};
@@ -55,7 +55,7 @@ void expect_safe_end(const Way& way, const Scene& scene) {
 }
 
 /// Under the framework's own functions, and at no more than the vehicle's speeds.
-void expect_flyable(const Way& way, const Scene& scene) {
+void expect_flyable(const Way& way, const KnownScene& scene) {
   ASSERT_GE(way.legs.size(), 2U);
   for (std::size_t i = 0; i + 1 < way.legs.size(); ++i) {
     const auto& [t0, a] = way.legs[i];
@@ -70,7 +70,7 @@ void expect_flyable(const Way& way, const Scene& scene) {
   }
 }
 
-Way escape(const Scene& scene, const Lattice& lattice = {}, double until_s = 60) {
+Way escape(const KnownScene& scene, const Lattice& lattice = {}, double until_s = 60) {
   const EscapeSearch search(scene, problem(true).goal, lattice);
   Way way = search.escape(0, {0, 0, 1000}, until_s);
   if (way.found()) {
@@ -130,7 +130,7 @@ TEST(EscapeSearch, DoesNotFleeBeforeAWallToTheEdgeOfTheVolume) {
     wall.push_back({{500, 180.0 * i, 1000}, {-kSpeed / 6, 0, 0}, 100});
   }
   const auto outcome = [&](bool level) {
-    Scene scene = scene_with(wall, level);
+    KnownScene scene = scene_with(wall, level);
     scene.volume = {{-300, -600, 0}, {5000, 600, 2000}};
     return escape(scene, {4, 2, 24}).outcome;
   };
@@ -143,7 +143,7 @@ TEST(EscapeSearch, DoesNotFleeBeforeAWallToTheEdgeOfTheVolume) {
 
 /// Of what flies along as fast, the vehicle is clear aside of its way and not before it.
 TEST(EscapeSearch, IsClearWhereNothingComesAnyMore) {
-  const Scene scene = scene_with({{{-300, 0, 1000}, {kSpeed, 0, 0}, 98}});
+  const KnownScene scene = scene_with({{{-300, 0, 1000}, {kSpeed, 0, 0}, 98}});
   const auto clear_after = [&](const Vec3& velocity) {
     return scene.clear_after({0, 0, 1000}, 0, velocity);
   };
@@ -155,28 +155,28 @@ TEST(EscapeSearch, IsClearWhereNothingComesAnyMore) {
 }
 
 /// A lane between two walls, open to the east: what fills it comes in there.
-Scene dead_end(double plug_radius) {
+KnownScene dead_end(double plug_radius) {
   World world = testing::world_of({Shape{BoxShape{{{-100, -130, 0}, {2000, -50, 2000}}}},
                                    Shape{BoxShape{{{-100, 50, 0}, {2000, 130, 2000}}}},
                                    Shape{BoxShape{{{-180, -130, 0}, {-100, 130, 2000}}}}});
-  Scene scene(std::move(world), problem(true));
+  KnownScene scene(std::move(world), problem(true));
   scene.movers = {{{800, 0, 1000}, {-kSpeed / 2, 0, 0}, plug_radius}};
   return scene;
 }
 
 TEST(EscapeSearch, SeesWhatStandsStill) {
   EXPECT_EQ(escape(dead_end(49)).outcome, Way::Outcome::none);
-  Scene empty = dead_end(49);
+  KnownScene empty = dead_end(49);
   empty.movers.clear();
   EXPECT_TRUE(escape(empty).found()) << "it may wait";
   // By the side of what is half as wide as the lane.
-  Scene narrow = dead_end(20);
+  KnownScene narrow = dead_end(20);
   narrow.movers[0].at_0.y() = 25;
   EXPECT_TRUE(escape(narrow, Lattice{1, 6}).found());
 }
 
 TEST(EscapeSearch, KeepsToTheVolumeTheLevelAndTheClimb) {
-  Scene scene = scene_with({{{400, 0, 1000}, {-kSpeed, 0, 0}, 300}}, false);
+  KnownScene scene = scene_with({{{400, 0, 1000}, {-kSpeed, 0, 0}, 300}}, false);
   const Way way = escape(scene);
   ASSERT_TRUE(way.found());
   scene.volume = {{-50, -50, 0}, {400, 50, 2000}};
@@ -197,7 +197,7 @@ TEST(EscapeSearch, ReachesTheGoalThroughTheGapOfAWall) {
     wall.push_back({{2000, 160.0 * i, 1000}, {-10, 0, 0}, 100});
   }
   const auto to_goal = [&] {
-    Scene scene = scene_with(wall);
+    KnownScene scene = scene_with(wall);
     scene.volume = {{-500, -1000, 0}, {5500, 1000, 2000}};
     const EscapeSearch search(scene, problem(true).goal, Lattice{4, 2});
     const Way way = search.to_goal(0, {0, 0, 1000}, 220);
@@ -213,7 +213,7 @@ TEST(EscapeSearch, ReachesTheGoalThroughTheGapOfAWall) {
 }
 
 /// Rings with a gap or none, in disorder: about half can be left.
-Scene disordered(std::uint64_t seed) {
+KnownScene disordered(std::uint64_t seed) {
   RandomStream random = RandomStream(seed).sub("ring");
   // One statement a draw: compilers differ in the order in which they evaluate arguments.
   const int count = int(random.integer(7, 10));
@@ -233,7 +233,7 @@ TEST(EscapeSearch, AFinerLatticeFindsNoLess) {
   int found = 0;
   int more = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Scene scene = disordered(seed);
+    const KnownScene scene = disordered(seed);
     const Lattice coarse{4, 3, 16, 1};
     const bool coarsely = escape(scene, coarse, 30).found();
     const bool finely = escape(scene, coarse.halved(), 30).found();
@@ -250,7 +250,7 @@ TEST(EscapeSearch, AFinerLatticeFindsNoLess) {
 TEST(EscapeSearch, OneMoverMoreLeavesNoMoreWays) {
   int lost = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    Scene scene = disordered(seed);
+    KnownScene scene = disordered(seed);
     bool before = escape(scene, {}, 30).found();
     while (!scene.movers.empty()) {
       scene.movers.pop_back();
@@ -378,4 +378,4 @@ TEST(Cause, LooksAroundWhereTheHostSenses) {
   EXPECT_EQ(steps, (std::vector<std::size_t>{0, 2, 3, 4, 5}));
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::escape_search_test

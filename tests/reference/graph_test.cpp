@@ -6,7 +6,7 @@
 
 #include "reference/random_problem.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::graph_test {
 namespace {
 
 TEST(DijkstraItself, EqualsAllSimplePathsOnTinyGrids) {
@@ -32,4 +32,4 @@ TEST(DijkstraItself, EqualsAllSimplePathsOnTinyGrids) {
   EXPECT_GT(cut_off, 10);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::graph_test

@@ -8,7 +8,7 @@
 #include "reference/isometry.hpp"
 #include "reference/sampled_judge.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::judge_oracle_test {
 namespace {
 
 /// From the start (mostly) to the goal (mostly) by way of random places, some outside the volume.
@@ -270,4 +270,4 @@ TEST(JudgeMetamorphic, AStricterRuleFindsNoLess) {
   }
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::judge_oracle_test

@@ -25,7 +25,7 @@ struct Mover {
 /// its speed: turning to and fro it keeps to any slower mean speed, and the turn limit of the
 /// pilots yields to safety. So a leg is flyable where its mean speed is the vehicle's at most, and
 /// its mean rate of climb that of the steepest climb allowed.
-struct Scene {
+struct KnownScene {
   World world;
   std::vector<Mover> movers;
   Box volume;
@@ -35,7 +35,7 @@ struct Scene {
   double speed = 0;
   double climb_speed = 0;
 
-  Scene(World layers, const Request& request)
+  KnownScene(World layers, const Request& request)
       : world(std::move(layers)),
         volume(request.volume),
         level_m(request.level_m),

@@ -5,7 +5,7 @@
 #include "reference/isometry.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::pipeline_metamorphic_test {
 namespace {
 
 std::string text(double value) {
@@ -201,4 +201,4 @@ TEST(PipelineMetamorphic, AHarderWorldHasNoShorterPlan) {
   EXPECT_GT(longer, 3);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::pipeline_metamorphic_test

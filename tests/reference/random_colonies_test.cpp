@@ -14,7 +14,7 @@
 #include "reference/random_levels.hpp"
 #include "reference/random_problem.hpp"
 
-namespace altiplan {
+namespace altiplan::random_colonies_test {
 namespace {
 
 using testing::counter;
@@ -314,4 +314,4 @@ void hold_promises(int from, int to) {
 TEST(RandomColonies, KeepTheirPromises) { hold_promises(0, 12); }
 TEST(NightlyRandomColonies, KeepTheirPromises) { hold_promises(1000, 1300); }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::random_colonies_test

@@ -15,7 +15,7 @@
 #include "reference/random_problem.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::random_plans_test {
 namespace {
 
 using testing::make_planner;
@@ -223,4 +223,4 @@ TEST(NightlyRandomPlans, KeepTheirPromises) {
   expect_promises_kept(among_cells, 5'000);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::random_plans_test

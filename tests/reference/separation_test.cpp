@@ -8,7 +8,7 @@
 
 #include "framework/shape_oracle.hpp"
 
-namespace altiplan::oracle {
+namespace altiplan::oracle::separation_test {
 namespace {
 
 constexpr double kScales[] = {1, 100, 10'000};
@@ -100,4 +100,4 @@ TEST(Separation, LongNeedlesAreToldApart) {
   }
 }
 }  // namespace
-}  // namespace altiplan::oracle
+}  // namespace altiplan::oracle::separation_test

@@ -4,7 +4,7 @@
 
 #include "reference/isometry.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::smoother_oracle_test {
 namespace {
 
 struct Planned {
@@ -142,4 +142,4 @@ TEST(NightlySmootherOracle, ShortcutKeepsItsLaws) { hold_laws("shortcut", true, 
 TEST(NightlySmootherOracle, TrimKeepsItsLaws) { hold_laws("trim", true, 1000, 5000); }
 TEST(NightlySmootherOracle, HermiteKeepsItsLaws) { hold_laws("hermite", false, 1000, 5000); }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::smoother_oracle_test

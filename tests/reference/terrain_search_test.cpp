@@ -12,7 +12,7 @@
 #include "support/folders.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::terrain_search_test {
 namespace {
 
 struct Ground {
@@ -206,4 +206,4 @@ TEST(NightlyTerrainSearch, LengthsAndVerdictsAreThoseOfAPlainSearch) {
   hold(1'000'000, 1'000'000, 7);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::terrain_search_test

@@ -7,7 +7,7 @@
 #include "altiplan/shape.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::turn_oracle_test {
 namespace {
 
 using testing::make_environment;
@@ -150,4 +150,4 @@ TEST(TurnOracle, GrazingTurnsAreDecidedWithinTenMicrometres) {
   EXPECT_FALSE(blocked(BoxShape{{{radius + r, -10, 0}, {200, 200, 100}}}));
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::turn_oracle_test

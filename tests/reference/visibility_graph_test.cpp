@@ -6,7 +6,7 @@
 #include "framework/shape_oracle.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::visibility_graph_test {
 namespace {
 
 TEST(VisibilityGraph, LengthsKnownByHand) {
@@ -103,4 +103,4 @@ TEST(VisibilityGraph, KeepsItsLaws) {
   }
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::visibility_graph_test

@@ -9,7 +9,7 @@
 #include "framework/sight_oracle.hpp"
 #include "reference/graph.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::visible_cells_test {
 namespace {
 
 /// All pairs drawn out.
@@ -155,4 +155,4 @@ TEST(VisibleCells, OfOneLevelDoWhereBuildingsReachTheTop) {
   EXPECT_GT(bent, 4);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::visible_cells_test

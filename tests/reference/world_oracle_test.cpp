@@ -4,7 +4,7 @@
 
 #include "reference/random_problem.hpp"
 
-namespace altiplan::reference {
+namespace altiplan::reference::world_oracle_test {
 namespace {
 
 struct Place {
@@ -268,4 +268,4 @@ TEST(WorldOracle, MovingSolidsAreMetWhereSamplesInTimeMeetThem) {
   EXPECT_GT(met, 10);
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::world_oracle_test

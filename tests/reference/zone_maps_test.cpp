@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace altiplan::reference {
+namespace altiplan::reference::zone_maps_test {
 namespace {
 
 TEST(ZoneMaps, ShortestRouteOfThePapersMap) {
@@ -88,4 +88,4 @@ TEST(ZoneMaps, ThePipelineOfReferenceComesNear) {
   }
 }
 }  // namespace
-}  // namespace altiplan::reference
+}  // namespace altiplan::reference::zone_maps_test

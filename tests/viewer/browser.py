@@ -17,7 +17,7 @@ try:
 except ImportError as error:
     MISSING = [str(error)]
 if MISSING:
-    print(f"skipped: needs Debian's chromium, chromium-driver and python3-selenium: {MISSING}")
+    print(f"skipped: needs Debian's chromium, chromium-driver and python3-selenium (tools/setup ci): {MISSING}")
     sys.exit(SKIPPED)
 
 QUIET = ["--headless", "--no-sandbox", "--disable-quic", "--no-first-run",

@@ -16,7 +16,7 @@ import unittest
 
 SKIPPED = 77
 if not shutil.which("chromium"):
-    print("skipped: needs Debian's chromium")
+    print("skipped: needs Debian's chromium (tools/setup ci)")
     sys.exit(SKIPPED)
 
 PROGRAM, PLUGINS = sys.argv[1:3]

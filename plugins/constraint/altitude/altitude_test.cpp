@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::altitude_test {
 namespace {
 
 /// A problem from west to east under the constraint, in a world with nothing else.
@@ -55,4 +55,4 @@ TEST(Altitude, HoldsForTracksToo) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::altitude_test

@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::clearance_test {
 namespace {
 
 /// Past a ball of 50 m radius, 100 m south of the straight line.
@@ -51,4 +51,4 @@ TEST(Clearance, MayHoldForRoutesAlone) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::clearance_test

@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::climb_angle_test {
 namespace {
 
 /// A problem from west to east under the constraint, in a world with nothing else.
@@ -56,4 +56,4 @@ TEST(ClimbAngle, HoldsForTracksToo) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::climb_angle_test

@@ -7,7 +7,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::ground_clearance_test {
 namespace {
 
 /// Ground at sea level everywhere, and nothing else.
@@ -64,4 +64,4 @@ TEST(GroundClearance, MayHoldForRoutesAlone) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::ground_clearance_test

@@ -9,7 +9,7 @@
 #include "support/posts.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::ground_distance_test {
 namespace {
 
 constexpr double kEast = 20;
@@ -247,4 +247,4 @@ TEST(NightlyGroundDistance, AgreesWithAnIndependentReference) {
   EXPECT_EQ(tally.invented, 0);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::ground_distance_test

@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::route_length_test {
 namespace {
 
 /// A problem from west to east under the constraint, in a world with nothing else.
@@ -49,4 +49,4 @@ TEST(RouteLength, HoldsForTracksToo) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::route_length_test

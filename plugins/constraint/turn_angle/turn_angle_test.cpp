@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::turn_angle_test {
 namespace {
 
 /// A problem from west to east under the constraint, in a world with nothing else.
@@ -53,4 +53,4 @@ TEST(TurnAngle, LeavesTracksAlone) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::turn_angle_test

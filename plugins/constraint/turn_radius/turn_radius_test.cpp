@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::turn_radius_test {
 namespace {
 
 /// A problem from west to east under the constraint, in a world with nothing else.
@@ -46,4 +46,4 @@ TEST(TurnRadius, HoldsForTracksToo) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::turn_radius_test

@@ -10,7 +10,7 @@
 #include "support/folders.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::city_test {
 namespace {
 
 const World kNothing;
@@ -279,4 +279,4 @@ TEST(City, WhatIsWrongIsNamed) {
             std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::city_test

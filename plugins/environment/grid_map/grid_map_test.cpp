@@ -8,7 +8,7 @@
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::grid_map_test {
 namespace {
 
 const World kNothing;
@@ -70,4 +70,4 @@ TEST(GridMap, WhatIsWrongIsNamedWithItsLine) {
             std::string::npos);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::grid_map_test

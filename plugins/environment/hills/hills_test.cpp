@@ -6,7 +6,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::hills_test {
 namespace {
 
 using testing::make_environment;
@@ -310,4 +310,4 @@ TEST(Hills, RasterLeavesNoGroundFree) {
   EXPECT_EQ(tight, 0) << "blocked well above the ground";
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::hills_test

@@ -8,7 +8,7 @@
 
 #include "models_test.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::mesh_damage_test {
 namespace {
 
 /// A tetrahedron; its file in the three forms.
@@ -267,4 +267,4 @@ TEST_F(DamagedMesh, EveryOtherByteMayBeAnother) {
   }
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::mesh_damage_test

@@ -10,7 +10,7 @@
 #include "altiplan/drawing.hpp"
 #include "models_test.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::mesh_test {
 namespace {
 
 using Ring = std::vector<std::array<double, 2>>;
@@ -273,4 +273,4 @@ TEST_F(Mesh, ARouteIsPlannedAroundItAndJudged) {
   EXPECT_TRUE(through);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::mesh_test

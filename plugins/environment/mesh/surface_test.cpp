@@ -10,7 +10,7 @@
 
 #include "random_triangles_test.hpp"
 
-namespace altiplan::mesh {
+namespace altiplan::mesh::surface_test {
 namespace {
 
 /// A torus whose tube has flat sides, with its corners on a grid: many verticals meet edges.
@@ -127,4 +127,4 @@ TEST(Surface, WallsAlongTheAxesAreOnNoVertical) {
   EXPECT_EQ(std::abs(surface.winding({0.2, 0.1, 0.2})), 1);
 }
 }  // namespace
-}  // namespace altiplan::mesh
+}  // namespace altiplan::mesh::surface_test

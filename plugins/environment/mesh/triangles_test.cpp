@@ -10,7 +10,7 @@
 #include "altiplan/kit/layers/solid.hpp"
 #include "random_triangles_test.hpp"
 
-namespace altiplan::mesh {
+namespace altiplan::mesh::triangles_test {
 namespace {
 
 /// Visits points of the triangle at even spacing.
@@ -79,4 +79,4 @@ TEST(Triangle, BoxDistanceIsTheLeastOfItsPoints) {
   }
 }
 }  // namespace
-}  // namespace altiplan::mesh
+}  // namespace altiplan::mesh::triangles_test

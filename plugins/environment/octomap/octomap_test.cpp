@@ -13,7 +13,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::octomap_test {
 namespace {
 
 const World kNothing;
@@ -308,4 +308,4 @@ TEST(OctoMap, DamageIsAnErrorOrAMap) {
   }
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::octomap_test

@@ -7,7 +7,7 @@
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::radar_test {
 namespace {
 
 /// Rolling ground with a wall-like ridge along y = 1000, of 20 m posts over 4 km.
@@ -207,4 +207,4 @@ TEST(Radar, RefusesWhatItCannotPlace) {
   }
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::radar_test

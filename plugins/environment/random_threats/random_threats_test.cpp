@@ -5,7 +5,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::random_threats_test {
 namespace {
 
 using testing::make_environment;
@@ -57,4 +57,4 @@ TEST(RandomThreats, RefusesWrongParameters) {
   EXPECT_NE(testing::parameter_problems("environment", "random_threats", "{seed: -1}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::random_threats_test

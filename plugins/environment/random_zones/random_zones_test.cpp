@@ -4,7 +4,7 @@
 #include "framework/shape_oracle.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::random_zones_test {
 namespace {
 
 using oracle::Point2;
@@ -147,4 +147,4 @@ TEST(RandomZones, RefusesWhatDoesNotFit) {
   EXPECT_THROW(make_environment("random_zones", "{seed: 1, blocks: 200}"), Error);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::random_zones_test

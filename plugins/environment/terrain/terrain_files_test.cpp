@@ -5,7 +5,7 @@
 
 #include "terrain_files_test.hpp"
 
-namespace altiplan {
+namespace altiplan::terrain_files_test {
 namespace {
 
 TEST_F(MadeFiles, SpikeBetweenSamplesIsSeen) {
@@ -188,4 +188,4 @@ TEST_F(MadeFiles, TruncatedTiffIsRefused) {
 
 // Contract and metamorphic properties -------------------------------------------------------------
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::terrain_files_test

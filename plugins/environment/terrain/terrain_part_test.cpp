@@ -7,7 +7,7 @@
 #include "altiplan/random.hpp"
 #include "terrain_files_test.hpp"
 
-namespace altiplan {
+namespace altiplan::terrain_part_test {
 namespace {
 
 constexpr int kColumns = 2600;
@@ -259,4 +259,4 @@ TEST_F(PartOfAModel, TilesAndStripsOfATiffAreTheSame) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::terrain_part_test

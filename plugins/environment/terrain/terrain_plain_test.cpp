@@ -6,7 +6,7 @@
 #include "altiplan/height_field.hpp"
 #include "terrain_files_test.hpp"
 
-namespace altiplan {
+namespace altiplan::terrain_plain_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -156,4 +156,4 @@ TEST_F(PlainModels, DamagedOnesAreRefusedAsByGdal) {
   EXPECT_GT(refused, 20);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::terrain_plain_test

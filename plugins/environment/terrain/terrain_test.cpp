@@ -7,7 +7,7 @@
 
 #include "terrain_files_test.hpp"
 
-namespace altiplan {
+namespace altiplan::terrain_test {
 namespace {
 
 struct Sample {
@@ -301,4 +301,4 @@ TEST(Terrain, RasterLeavesNoGroundFree) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::terrain_test

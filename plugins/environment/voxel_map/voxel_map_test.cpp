@@ -8,7 +8,7 @@
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::voxel_map_test {
 namespace {
 
 const World kNothing;
@@ -57,4 +57,4 @@ TEST(VoxelMap, WhatIsWrongIsNamedWithItsLine) {
   }
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::voxel_map_test

@@ -13,7 +13,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::published_test {
 namespace {
 
 const Frame kFrame = Frame::geographic(7, 46, 46);
@@ -321,4 +321,4 @@ TEST_F(Published, RefusesWhatDoesNotGoWithIt) {
   EXPECT_EQ(refusal(""), "");
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::published_test

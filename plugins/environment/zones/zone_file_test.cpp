@@ -9,7 +9,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::zone_file_test {
 namespace {
 
 const World kNothing;
@@ -304,4 +304,4 @@ TEST_F(ZoneFile, FilesOfOthers) {
   EXPECT_THROW(of("px4_avoidance.plan"), Error);
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::zone_file_test

@@ -7,7 +7,7 @@
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::zones_test {
 namespace {
 
 const World kNothing;
@@ -251,4 +251,4 @@ TEST(Zones, ReadsFinnishZones) {
   EXPECT_TRUE(says(refusal(timed), "start_time"));
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::zones_test

@@ -4,7 +4,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::apf_repairs_test {
 namespace {
 
 constexpr const char* kNone =
@@ -96,4 +96,4 @@ TEST(ApfRepairs, NoneOfThemIsInThePlainVariant) {
   EXPECT_NE(once.step("{}"), once.step(with_only("")));
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::apf_repairs_test

@@ -8,7 +8,7 @@
 #include "apf_worlds_test.hpp"
 #include "support/counted_allocations.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::apf_step_cost_test {
 namespace {
 
 /// One pillar in closed form: a layer whose own queries allocate nothing.
@@ -164,4 +164,4 @@ TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
   EXPECT_GT(legs_asked(10), least) << "until all fly otherwise";
 }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::apf_step_cost_test

@@ -9,7 +9,7 @@
 #include "apf_worlds_test.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::apf_test {
 namespace {
 
 constexpr double kNaturalTurn = 30;
@@ -262,4 +262,4 @@ TEST(Apf, ContinuesFromTheObservedState) {
 }
 
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::apf_test

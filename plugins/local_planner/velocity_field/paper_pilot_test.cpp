@@ -6,8 +6,10 @@
 #include "reference/velocity_flights.hpp"
 #include "support/counted_allocations.hpp"
 
-namespace velocity_field {
+namespace velocity_field::paper_pilot_test {
 namespace {
+using altiplan::testing::allocations;
+using altiplan::testing::counting;
 using altiplan::testing::make_local_planner;
 using altiplan::testing::parameter_problems;
 
@@ -266,4 +268,4 @@ TEST(PaperPilot, RefusesWrongParameters) {
   }
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::paper_pilot_test

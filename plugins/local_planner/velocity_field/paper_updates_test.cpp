@@ -4,7 +4,7 @@
 
 #include "reference/velocity_flights.hpp"
 
-namespace velocity_field {
+namespace velocity_field::paper_updates_test {
 namespace {
 using altiplan::testing::make_local_planner;
 
@@ -77,4 +77,4 @@ TEST(PaperUpdates, AVirtualTargetIsDroppedEvenWhereNothingElseChanges) {
   }
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::paper_updates_test

@@ -6,7 +6,7 @@
 
 #include "robust_test_maps.hpp"
 
-namespace velocity_field {
+namespace velocity_field::robust_flight_test {
 namespace {
 
 const Steps kSteps(30, 500, kPi);
@@ -238,4 +238,4 @@ TEST(RobustFlight, CirclesWhereNoWayLeadsToTheGoal) {
   EXPECT_LE((at - Vec2(40000, 0)).norm(), kArrival);
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::robust_flight_test

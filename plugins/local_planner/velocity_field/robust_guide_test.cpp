@@ -5,7 +5,7 @@
 
 #include "robust_test_maps.hpp"
 
-namespace velocity_field {
+namespace velocity_field::robust_guide_test {
 namespace {
 
 const Vec2 kStart(0, 0);
@@ -118,4 +118,4 @@ TEST(Guide, FindsThePlaceBeside) {
   }
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::robust_guide_test

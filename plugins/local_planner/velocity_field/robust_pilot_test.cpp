@@ -4,7 +4,7 @@
 
 #include "robust_test_maps.hpp"
 
-namespace velocity_field {
+namespace velocity_field::robust_pilot_test {
 namespace {
 
 constexpr const char* kRobust = "{variant: robust}";
@@ -191,4 +191,4 @@ TEST(RobustPilot, TakesShorterStepsWhereTheHostDoes) {
   EXPECT_GE(min_radius(flown.route), 400) << "between steps of two lengths the circle is another";
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::robust_pilot_test

@@ -7,7 +7,7 @@
 #include "robust_flight.hpp"
 #include "robust_test_maps.hpp"
 
-namespace velocity_field {
+namespace velocity_field::robust_safety_test {
 namespace {
 
 const Steps kSteps(30, 500, kPi);
@@ -126,4 +126,4 @@ TEST(WayOut, EntersNoThreat) {
   EXPECT_GT(unsafe, 5);
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::robust_safety_test

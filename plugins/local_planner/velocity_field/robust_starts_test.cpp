@@ -6,7 +6,7 @@
 #include "altiplan/random.hpp"
 #include "robust_test_maps.hpp"
 
-namespace velocity_field {
+namespace velocity_field::robust_starts_test {
 namespace {
 
 constexpr const char* kRobust = "{variant: robust}";
@@ -102,4 +102,4 @@ TEST(RobustGoal, ATimeThatIsOverEndsTheSearch) {
   EXPECT_EQ(flown.outcome, PilotStep::Outcome::stuck);
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::robust_starts_test

@@ -5,7 +5,7 @@
 #include "reference/velocity_flights.hpp"
 #include "terrain_sections.hpp"
 
-namespace velocity_field {
+namespace velocity_field::terrain_test {
 namespace {
 using altiplan::testing::make_environment;
 
@@ -203,4 +203,4 @@ TEST(Terrain, RandomHillsAreNotFlownInto) {
   EXPECT_GE(climbs, 5);
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::terrain_test

@@ -5,7 +5,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace velocity_field {
+namespace velocity_field::threats_test {
 namespace {
 using altiplan::SplitMix64;
 
@@ -115,4 +115,4 @@ TEST(Threats, NoneAtAll) {
   EXPECT_TRUE(Threats().near({0, 0}).empty());
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::threats_test

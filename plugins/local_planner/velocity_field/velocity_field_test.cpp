@@ -6,7 +6,7 @@
 #include "reference/velocity_flights.hpp"
 #include "virtual_targets.hpp"
 
-namespace velocity_field {
+namespace velocity_field::velocity_field_test {
 namespace {
 
 TEST(Field, PushAtTheNamedPlaces) {
@@ -157,4 +157,4 @@ TEST(PaperTable, FewPointsStay) {
   }
 }
 }  // namespace
-}  // namespace velocity_field
+}  // namespace velocity_field::velocity_field_test

@@ -4,7 +4,7 @@
 #include "altiplan/check.hpp"
 #include "reference/colonies.hpp"
 
-namespace altiplan {
+namespace altiplan::ant_colony_test {
 namespace {
 
 using testing::counter;
@@ -91,4 +91,4 @@ TEST(AntColony, RefusesASpaceOfLevels) {
   EXPECT_NE(result.message.find("level"), std::string::npos) << result.message;
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::ant_colony_test

@@ -5,7 +5,7 @@
 #include "altiplan/check.hpp"
 #include "reference/cell_corners.hpp"
 
-namespace altiplan {
+namespace altiplan::anya_lengths_test {
 namespace {
 
 using reference::CellCorners;
@@ -244,4 +244,4 @@ TEST(AnyaLengths, NeverLongerThanTheGrid) {
   EXPECT_GT(solved, 400);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::anya_lengths_test

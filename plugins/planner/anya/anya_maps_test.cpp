@@ -9,7 +9,7 @@
 #include "altiplan/measures.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::anya_maps_test {
 namespace {
 
 using testing::make_planner;
@@ -109,4 +109,4 @@ TEST(AnyaMaps, NeverLongerThanTheGridThetaStarOrASmoothedRoute) {
   EXPECT_GT(shorter, planned / 3);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::anya_maps_test

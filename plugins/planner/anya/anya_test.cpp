@@ -9,7 +9,7 @@
 #include "altiplan/error.hpp"
 #include "reference/level_maps.hpp"
 
-namespace altiplan {
+namespace altiplan::anya_test {
 namespace {
 
 using testing::counter;
@@ -346,4 +346,4 @@ TEST(Anya, TraitsPromiseTheShortestOnALevel) {
   EXPECT_FALSE(traits.spatial);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::anya_test

@@ -6,7 +6,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::astar_costs_test {
 namespace {
 
 constexpr const char* kPlanners[] = {"astar", "bidirectional_astar"};
@@ -226,4 +226,4 @@ TEST(AStarAnytime, ByCellsToo) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::astar_costs_test

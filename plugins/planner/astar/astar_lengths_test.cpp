@@ -7,7 +7,7 @@
 #include "altiplan/measures.hpp"
 #include "astar_worlds_test.hpp"
 
-namespace altiplan {
+namespace altiplan::astar_lengths_test {
 namespace {
 
 using testing::among;
@@ -252,4 +252,4 @@ TEST(AStar, IntegerCostsAreWithinTheirError) {
   EXPECT_FALSE(make_planner("astar", integer)->traits().optimal);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::astar_lengths_test

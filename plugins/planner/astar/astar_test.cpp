@@ -10,7 +10,7 @@
 #include "altiplan/error.hpp"
 #include "astar_worlds_test.hpp"
 
-namespace altiplan {
+namespace altiplan::astar_test {
 namespace {
 
 using testing::among;
@@ -208,4 +208,4 @@ TEST(AStar, TraitsFollowTheParameters) {
   EXPECT_NE(testing::parameter_problems("planner", "astar", "{cell_m: [1, 0, 1]}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::astar_test

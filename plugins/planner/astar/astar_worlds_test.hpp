@@ -12,10 +12,11 @@
 
 namespace altiplan::testing {
 
-/// Length of the shortest path over cells by Dijkstra's algorithm; infinite if there is none.
-inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, const Cell& goal,
-                       int neighbours,
-                       const std::function<bool(const Cell&, const Cell&)>& step_free) {
+/// The lengths to all cells by Dijkstra's algorithm, one entry per cell, x fastest; kInfinity where
+/// there is no route. They are final up to `last`, where the search then ends.
+inline std::vector<double> shortest_lengths(
+    const Cell& counts, const Vec3& cell, const Cell& start, int neighbours,
+    const std::function<bool(const Cell&, const Cell&)>& step_free, const Cell* last = nullptr) {
   const auto id = [&](const Cell& c) { return (c[2] * counts[1] + c[1]) * counts[0] + c[0]; };
   std::vector<double> best(std::size_t(counts[0] * counts[1] * counts[2]), kInfinity);
   using Entry = std::pair<double, Cell>;
@@ -25,8 +26,11 @@ inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, 
   while (!queue.empty()) {
     const auto [g, c] = queue.top();
     queue.pop();
-    if (c == goal) {
-      return g;
+    if (last && c == *last) {
+      return best;
+    }
+    if (g > best[std::size_t(id(c))]) {
+      continue;
     }
     for (int dz = -1; dz <= 1; ++dz) {
       for (int dy = -1; dy <= 1; ++dy) {
@@ -47,7 +51,16 @@ inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, 
       }
     }
   }
-  return kInfinity;
+  return best;
+}
+
+/// Length of the shortest path over cells by Dijkstra's algorithm; infinite if there is none.
+inline double shortest(const Cell& counts, const Vec3& cell, const Cell& start, const Cell& goal,
+                       int neighbours,
+                       const std::function<bool(const Cell&, const Cell&)>& step_free) {
+  const std::vector<double> lengths =
+      shortest_lengths(counts, cell, start, neighbours, step_free, &goal);
+  return lengths[std::size_t((goal[2] * counts[1] + goal[1]) * counts[0] + goal[0])];
 }
 
 /// Solid balls, in closed form.

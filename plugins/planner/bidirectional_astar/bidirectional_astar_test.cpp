@@ -6,7 +6,7 @@
 #include "altiplan/error.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::bidirectional_astar_test {
 namespace {
 
 using testing::make_planner;
@@ -164,4 +164,4 @@ TEST(BidirectionalAStar, TraceHoldsATreeForEachSide) {
   EXPECT_TRUE(both);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::bidirectional_astar_test

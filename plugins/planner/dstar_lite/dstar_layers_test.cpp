@@ -7,7 +7,7 @@
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "dstar_worlds_test.hpp"
 
-namespace altiplan {
+namespace altiplan::dstar_layers_test {
 namespace {
 
 using testing::make_planner;
@@ -234,4 +234,4 @@ TEST(DStarLiteLayers, EqualPlansMadeAfreshUnderLimitsOnTurnsAndClimb) {
   EXPECT_GT(solved, 30);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::dstar_layers_test

@@ -8,7 +8,7 @@
 #include "altiplan/error.hpp"
 #include "dstar_worlds_test.hpp"
 
-namespace altiplan {
+namespace altiplan::dstar_lite_test {
 namespace {
 
 using testing::city_request;
@@ -176,4 +176,4 @@ TEST(DStarLite, TraitsAndParameters) {
   EXPECT_NE(testing::parameter_problems("planner", "dstar_lite", "{neighbours: 8}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::dstar_lite_test

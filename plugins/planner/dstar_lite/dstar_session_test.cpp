@@ -7,7 +7,7 @@
 
 #include "dstar_worlds_test.hpp"
 
-namespace altiplan {
+namespace altiplan::dstar_session_test {
 namespace {
 
 using testing::expanded;
@@ -301,4 +301,4 @@ TEST(DStarLiteSession, AnotherGoalOrLatticeIsPlannedAfresh) {
   EXPECT_EQ(result.status, PlanStatus::solved) << result.message;
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::dstar_session_test

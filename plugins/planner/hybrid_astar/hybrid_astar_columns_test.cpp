@@ -9,7 +9,7 @@
 #include "columns.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::hybrid_astar {
+namespace altiplan::hybrid_astar::hybrid_astar_columns_test {
 namespace {
 
 constexpr double kCell = 50;
@@ -117,4 +117,4 @@ TEST(HybridAstarColumns, AreThoseOfDijkstraInWhateverOrderTheyAreAskedFor) {
   EXPECT_GT(finite, 1500);
 }
 }  // namespace
-}  // namespace altiplan::hybrid_astar
+}  // namespace altiplan::hybrid_astar::hybrid_astar_columns_test

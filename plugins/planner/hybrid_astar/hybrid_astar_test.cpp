@@ -3,7 +3,7 @@
 
 #include "reference/wing_problems.hpp"
 
-namespace altiplan {
+namespace altiplan::hybrid_astar_test {
 namespace {
 
 using testing::between;
@@ -83,4 +83,4 @@ TEST(HybridAstar, EqualRequestsGiveEqualRoutes) {
   EXPECT_EQ(planner->plan(request).route, planner->plan(request).route);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::hybrid_astar_test

@@ -6,7 +6,7 @@
 #include "reference/colonies.hpp"
 #include "region_colony.hpp"
 
-namespace altiplan {
+namespace altiplan::improved_ant_colony_test {
 namespace {
 
 using improved_ant_colony::candidates;
@@ -152,4 +152,4 @@ TEST(ImprovedAntColony, RoulettesStayNumbersForHundredsOfIterations) {
   testing::expect_roulettes_sound(kName, many + ", deposit: cells, region_radius: 4");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::improved_ant_colony_test

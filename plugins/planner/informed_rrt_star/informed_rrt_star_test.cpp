@@ -3,7 +3,7 @@
 
 #include "reference/star_planners.hpp"
 
-namespace altiplan {
+namespace altiplan::informed_rrt_star_test {
 namespace {
 
 using testing::around_a_wall;
@@ -28,4 +28,4 @@ TEST(InformedRrtStar, IsShorterThanRrtStarAfterTheSameSamples) {
   EXPECT_LT(informed, plain);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::informed_rrt_star_test

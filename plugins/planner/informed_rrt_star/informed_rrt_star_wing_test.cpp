@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/wing_star_planners.hpp"
 
-namespace altiplan {
+namespace altiplan::informed_rrt_star_wing_test {
 namespace {
 
 constexpr const char* kPlanner = "informed_rrt_star";
@@ -34,4 +34,4 @@ TEST(InformedRrtStarWing, SteeringStraightGivesAPolyline) {
   testing::expect_a_polyline_if_steered_straight(kPlanner);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::informed_rrt_star_wing_test

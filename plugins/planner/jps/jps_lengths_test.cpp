@@ -4,7 +4,7 @@
 
 #include "jps_maps_test.hpp"
 
-namespace altiplan {
+namespace altiplan::jps_lengths_test {
 namespace {
 
 using testing::jps;
@@ -230,4 +230,4 @@ TEST(JpsLengths, IntegerCostsComeWithinTheirError) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::jps_lengths_test

@@ -7,7 +7,7 @@
 #include "altiplan/error.hpp"
 #include "jps_maps_test.hpp"
 
-namespace altiplan {
+namespace altiplan::jps_test {
 namespace {
 
 using testing::counter;
@@ -283,4 +283,4 @@ TEST(Jps, TraitsFollowTheParameters) {
   EXPECT_NE(testing::parameter_problems("planner", "jps", "{corner: round}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::jps_test

@@ -5,7 +5,7 @@
 
 #include "reference/any_angle_planners.hpp"
 
-namespace altiplan {
+namespace altiplan::lazy_theta_star_test {
 namespace {
 
 TEST(LazyThetaStar, IsNeverLongerThanTheGrid) {
@@ -59,4 +59,4 @@ TEST(NightlyLazyThetaStar, IsNeverLongerThanTheGridInThePapersCities) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::lazy_theta_star_test

@@ -6,7 +6,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::ompl_test {
 namespace {
 
 using testing::make_planner;
@@ -190,4 +190,4 @@ TEST(OmplPlugin, AStopEndsThoseThatGoOn) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::ompl_test

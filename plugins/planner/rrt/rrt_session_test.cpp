@@ -10,7 +10,7 @@
 #include "reference/pop_ups.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_session_test {
 namespace {
 
 using testing::make_planner;
@@ -265,4 +265,4 @@ TEST(RrtSession, AfreshIsAPlanFromThere) {
   EXPECT_EQ(counters(result)["nodes_kept"], 0);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_session_test

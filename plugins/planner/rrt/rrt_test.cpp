@@ -5,7 +5,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_test {
 namespace {
 
 using testing::make_planner;
@@ -178,4 +178,4 @@ TEST(Rrt, WithoutARouteItSaysHowNearItCame) {
       << longer.message;
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_test

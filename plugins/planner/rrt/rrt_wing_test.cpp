@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/wing_problems.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_wing_test {
 namespace {
 
 using testing::make_planner;
@@ -33,4 +33,4 @@ TEST(RrtWing, ASessionPlansFromTheNewPose) {
   EXPECT_TRUE(check(result.route, later).ok());
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_wing_test

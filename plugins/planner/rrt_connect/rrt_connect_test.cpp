@@ -5,7 +5,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_connect_test {
 namespace {
 
 using testing::counter;
@@ -176,4 +176,4 @@ TEST(RrtConnect, TheTraceHoldsATreeForEachSide) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_connect_test

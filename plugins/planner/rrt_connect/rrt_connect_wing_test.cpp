@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/wing_problems.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_connect_wing_test {
 namespace {
 
 using testing::make_planner;
@@ -49,4 +49,4 @@ TEST(RrtConnectWing, ClimbsInCirclesWhereThereIsNoRoom) {
   EXPECT_GE(length(result.route), 380 / std::sin(radians(8)) * (1 - 1e-9));
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_connect_wing_test

@@ -3,7 +3,7 @@
 
 #include "reference/star_planners.hpp"
 
-namespace altiplan {
+namespace altiplan::rrt_star_test {
 namespace {
 
 using testing::around_a_wall;
@@ -44,4 +44,4 @@ TEST(RrtStar, BesideTheRouteItIsShorterForTheSameSamples) {
   EXPECT_LT(beside, 0.99 * anywhere);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::rrt_star_test

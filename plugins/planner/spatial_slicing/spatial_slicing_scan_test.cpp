@@ -8,7 +8,7 @@
 #include "altiplan/kit/lattice/move_rules.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::spatial_slicing_scan_test {
 namespace {
 
 /// A world of boxes of cells, or of balls that do not align with cells.
@@ -176,4 +176,4 @@ TEST(SpatialSlicing, TakesThePointThatAFullScanOfThePlaneFindsBest) {
 }
 
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::spatial_slicing_scan_test

@@ -4,7 +4,7 @@
 #include "altiplan/error.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::spatial_slicing_test {
 namespace {
 
 using testing::counter;
@@ -190,4 +190,4 @@ TEST(SpatialSlicing, SolvesSimpleCitiesOfThePaperAndFewComplexOnes) {
   EXPECT_LE(complex, 20);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::spatial_slicing_test

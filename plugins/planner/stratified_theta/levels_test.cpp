@@ -10,7 +10,7 @@
 #include "reference/paper_cities.hpp"
 #include "reference/random_levels.hpp"
 
-namespace altiplan::stratified {
+namespace altiplan::stratified::levels_test {
 namespace {
 
 VoxelGrid empty(const Cell& counts) {
@@ -168,4 +168,4 @@ TEST(Corridor, LeadsOverBlocksWithRoomAndHoldsFreeCellsAlone) {
   EXPECT_EQ(found, 20);
 }
 }  // namespace
-}  // namespace altiplan::stratified
+}  // namespace altiplan::stratified::levels_test

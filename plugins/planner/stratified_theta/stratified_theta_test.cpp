@@ -4,7 +4,7 @@
 #include "reference/any_angle_planners.hpp"
 #include "reference/paper_cities.hpp"
 
-namespace altiplan {
+namespace altiplan::stratified_theta_test {
 namespace {
 
 using testing::expect_sound;
@@ -146,4 +146,4 @@ TEST(NightlyStratifiedTheta, SharesOfGoalsReachedUnderThePapersLimits) {
   EXPECT_EQ(solved_of(400, true, false, "{refine: corridor}"), 400);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::stratified_theta_test

@@ -3,7 +3,7 @@
 
 #include "reference/any_angle_planners.hpp"
 
-namespace altiplan {
+namespace altiplan::theta_star_test {
 namespace {
 
 TEST(ThetaStar, IsNeverLongerThanTheGrid) {
@@ -22,4 +22,4 @@ TEST(ThetaStar, BudgetAndRefusalsAreTold) {
 }
 TEST(ThetaStar, WaysFarLongerThanTheMapIsWide) { testing::expect_long_ways_found("theta_star"); }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::theta_star_test

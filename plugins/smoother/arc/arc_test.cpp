@@ -5,7 +5,7 @@
 #include "support/support.hpp"
 #include "support/walks.hpp"
 
-namespace altiplan {
+namespace altiplan::arc_test {
 namespace {
 
 using testing::counter;
@@ -175,4 +175,4 @@ TEST(Arc, OddRoutesAndNoRadius) {
   EXPECT_NE(testing::parameter_problems("smoother", "arc", "{radius_m: 0}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::arc_test

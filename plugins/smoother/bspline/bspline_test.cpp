@@ -5,7 +5,7 @@
 #include "support/support.hpp"
 #include "support/walks.hpp"
 
-namespace altiplan {
+namespace altiplan::bspline_test {
 namespace {
 
 using testing::make_smoother;
@@ -165,4 +165,4 @@ TEST(BSpline, StraightRoutesAndBudgets) {
   EXPECT_NE(testing::parameter_problems("smoother", "bspline", "{reach_m: 0}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::bspline_test

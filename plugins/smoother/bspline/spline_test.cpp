@@ -5,7 +5,7 @@
 
 #include "altiplan/random.hpp"
 
-namespace altiplan::bspline {
+namespace altiplan::bspline::spline_test {
 namespace {
 
 /// Cox and de Boor's recursion on whole knots: basis function n of degree 3 at t.
@@ -51,4 +51,4 @@ TEST(CubicSpline, BeginsAndEndsAtItsEndsAndIsSmooth) {
   }
 }
 }  // namespace
-}  // namespace altiplan::bspline
+}  // namespace altiplan::bspline::spline_test

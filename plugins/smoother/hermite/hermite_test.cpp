@@ -8,7 +8,7 @@
 #include "support/support.hpp"
 #include "support/walks.hpp"
 
-namespace altiplan {
+namespace altiplan::hermite_test {
 namespace {
 
 using testing::counter;
@@ -268,4 +268,4 @@ TEST(Hermite, OddRoutesAndBudgets) {
   EXPECT_NE(testing::parameter_problems("smoother", "hermite", "{tangents: uniform}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::hermite_test

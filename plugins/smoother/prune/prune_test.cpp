@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::prune_test {
 namespace {
 
 using testing::make_smoother;
@@ -117,4 +117,4 @@ TEST(Prune, RepeatedPointsGo) {
   EXPECT_EQ(make_smoother("prune")->smooth(route, request).route.size(), 2u);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::prune_test

@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::shortcut_test {
 namespace {
 
 using testing::counter;
@@ -105,4 +105,4 @@ TEST(Shortcut, TheSeedDecides) {
   EXPECT_NE(shortcut->smooth(kDetour, request).route, first);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::shortcut_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference/wing_problems.hpp"
 
-namespace altiplan {
+namespace altiplan::shortcut_turns_test {
 namespace {
 
 using testing::counter;
@@ -91,4 +91,4 @@ TEST(ShortcutOfTurns, TheSeedDecides) {
             shortcut->smooth(found.route, request).route);
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::shortcut_turns_test

@@ -10,7 +10,7 @@
 #include "support/posts.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::testing {
+namespace altiplan::testing::terrain_follow_test {
 namespace {
 
 constexpr double kSpacing = 20;
@@ -225,4 +225,4 @@ void compare(int rounds, std::uint64_t seed) {
 TEST(TerrainFollow, AgreesWithExhaustiveSearch) { compare(12, 28); }
 TEST(NightlyTerrainFollow, AgreesWithExhaustiveSearch) { compare(100, 29); }
 }  // namespace
-}  // namespace altiplan::testing
+}  // namespace altiplan::testing::terrain_follow_test

@@ -4,7 +4,7 @@
 #include "support/support.hpp"
 #include "support/walks.hpp"
 
-namespace altiplan {
+namespace altiplan::trim_test {
 namespace {
 
 using testing::counter;
@@ -161,4 +161,4 @@ TEST(Trim, OddRoutesAndBudgets) {
   EXPECT_NE(testing::parameter_problems("smoother", "trim", "{decay: 1}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::trim_test

@@ -3,7 +3,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::waypoint_reduction_test {
 namespace {
 
 using testing::counter;
@@ -147,4 +147,4 @@ TEST(WaypointReduction, RefusesWrongParameters) {
   EXPECT_NE(testing::parameter_problems("smoother", "waypoint_reduction", "{max_turn: 90}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::waypoint_reduction_test

@@ -8,7 +8,7 @@
 #include "altiplan/error.hpp"
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::pso_test {
 namespace {
 
 using Point = std::vector<double>;
@@ -150,4 +150,4 @@ TEST(Pso, ParametersHaveBounds) {
   EXPECT_EQ(testing::parameter_problems("tuner", "pso", "{inertia: 1, particles: 1}"), "");
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::pso_test

@@ -6,7 +6,7 @@
 
 #include "support/support.hpp"
 
-namespace altiplan {
+namespace altiplan::random_search_test {
 namespace {
 
 using Point = std::vector<double>;
@@ -51,4 +51,4 @@ TEST(RandomSearch, WeightsSumToOne) {
   }
 }
 }  // namespace
-}  // namespace altiplan
+}  // namespace altiplan::random_search_test
