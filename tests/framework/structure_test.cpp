@@ -119,7 +119,7 @@ TEST(Structure, TheSdkKnowsNeitherTheKitNorTheFormats) {
   const std::vector<fs::path> headers = sources("framework/include");
   sdk.insert(sdk.end(), headers.begin(), headers.end());
   std::erase_if(sdk, [](const fs::path& file) {
-    const std::string name = file.native();
+    const std::string name = fs::relative(file, kSource).string();
     return name.find("/kit/") != std::string::npos || name.find("/formats/") != std::string::npos;
   });
   EXPECT_GT(sdk.size(), 50u);
@@ -143,32 +143,54 @@ TEST(Structure, TheCoreDoesNotKnowTheHost) {
   EXPECT_GT(code.size(), 100u);
   EXPECT_EQ(list(forbidden(code, kHost)), "");
   std::erase_if(code, [](const fs::path& file) {
-    return file.native().find("/src/formats/") != std::string::npos;
+    return fs::relative(file, kSource).string().starts_with("framework/src/formats/");
   });
   EXPECT_EQ(list(forbidden(code, std::regex("^(nlohmann|pugixml)"))), "");
 }
 
-/// The rooms in their order, as the build has them.
-std::vector<std::string> rooms() {
+struct Room {
+  std::string name;
+  std::set<std::string> included;  ///< other rooms
+};
+
+/// The lines of rooms.txt, "host/judge: host/base", from which the build links the rooms.
+std::vector<Room> rooms() {
+  std::vector<Room> all;
   std::istringstream text(text_of(kSource / "framework/rooms.txt"));
-  return {std::istream_iterator<std::string>(text), {}};
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line.substr(line.find(':') + 1));
+    all.push_back(
+        {line.substr(0, line.find(':')), {std::istream_iterator<std::string>(words), {}}});
+  }
+  return all;
 }
 
-TEST(Structure, ARoomIncludesOnlyThoseBeforeIt) {
+TEST(Structure, ARoomIncludesTheRoomsThatItsLineNames) {
   const std::regex kInside(R"(^(host|link|study|tune|python|src|\.\.)/)");
-  std::set<std::string> open;
-  std::vector<std::string> found;
-  for (const std::string& room : rooms()) {
-    open.insert(room);
-    for (const fs::path& file : sources("framework/" + room)) {
+  for (const Room& room : rooms()) {
+    std::set<std::string> included;
+    for (const fs::path& file : sources("framework/" + room.name)) {
       for (const std::string& header : includes(file)) {
-        if (std::regex_search(header, kInside) && !open.count(fs::path(header).parent_path())) {
-          found.push_back(fs::relative(file, kSource).string() + " includes " + header);
+        const std::string other = fs::path(header).parent_path();
+        if (std::regex_search(header, kInside) && other != room.name) {
+          included.insert(other);
         }
       }
     }
+    EXPECT_EQ(list({included.begin(), included.end()}),
+              list({room.included.begin(), room.included.end()}))
+        << room.name;
   }
-  EXPECT_EQ(list(found), "");
+}
+
+TEST(Structure, ARoomStandsBelowThoseThatIncludeIt) {
+  std::set<std::string> below;
+  for (const Room& room : rooms()) {
+    for (const std::string& other : room.included) {
+      EXPECT_TRUE(below.contains(other)) << room.name << " names " << other;
+    }
+    below.insert(room.name);
+  }
 }
 
 TEST(Structure, EveryFolderIsARoomThatTheReadmeShows) {
@@ -179,7 +201,10 @@ TEST(Structure, EveryFolderIsARoomThatTheReadmeShows) {
       folders.insert(fs::relative(file.parent_path(), kSource / "framework").string());
     }
   }
-  std::vector<std::string> all = rooms();
+  std::vector<std::string> all;
+  for (const Room& room : rooms()) {
+    all.push_back(room.name);
+  }
   const std::regex kRow("^\\| `((host|link|study|tune|python)[a-z_/]*)` \\|");
   std::vector<std::string> shown;
   std::istringstream page(text_of(kSource / "framework/README.md"));

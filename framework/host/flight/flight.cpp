@@ -171,12 +171,6 @@ void Flight::end_flight(RunStatus status, Reason reason, std::string message) {
   }
 }
 
-void Flight::hand_over(bool to_pilot, std::string why) {
-  pilot_commands_ = to_pilot;
-  result_.handovers.push_back(
-      {state_.time_s, to_pilot ? setup_.pilot_name : "route", std::move(why)});
-}
-
 FlightResult fly(const FlightSetup& setup) {
   if (setup.route.empty() || !setup.request.start.starts_at(setup.route.front())) {
     throw Error("expected a route that begins at the start");

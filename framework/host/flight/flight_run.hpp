@@ -28,14 +28,26 @@ class Flight {
   std::string time_out() const;
   std::string away() const;
   void end_flight(RunStatus status, Reason reason, std::string message);
-  void hand_over(bool to_pilot, std::string why);
 
-  // Events, sensing, and obstacles on the route ahead: flight_sensing.cpp.
+  // Events and sensing: flight_events.cpp.
   /// Applies due events; anything that then covers the vehicle is a contact.
   void meet_events();
+  void sense();
+
+  // Who has the command, and why: handover.cpp.
+  /// Of an obstacle from the route ahead: the pilot takes over below it.
+  double takeover_distance() const;
+  /// Hands over to the pilot if the route ahead is unsafe and the vehicle takes commands.
+  bool pilot_takes_over();
   /// Hands over to the pilot for a target, or notes that it cannot.
   void meet_target(const FlightEvent::Near& target);
-  void sense();
+  /// Without the permission to command.
+  void note(const std::string& why);
+  void hand_over(bool to_pilot, std::string why);
+  /// Takes the nearest clear leg back to the path; false if there is none.
+  bool hand_back();
+
+  // Obstacles on the route ahead: dangers_ahead.cpp.
   /// A layer that the route was not planned around, nearer than `room` to the leg; null if none.
   const std::string* unplanned_near(const Vec3& a, const Vec3& b, double room) const;
   bool rest_is_blocked() const;
@@ -46,21 +58,19 @@ class Flight {
   const std::string* danger_ahead(double from, double t, double speed, double room) const;
   bool is_free(const Vec3& p, double room) const;
 
-  // Route following, pilot and hand-over: flight_command.cpp.
+  // The vehicle follows the route: route_follower.cpp.
   double speed() const;
   void fly_route();
-  void fly_pilot();
-  /// Without the permission to command.
-  void note(const std::string& why);
   FlownVehicle::Report track_report();
   void take(FlownTo flown);
+
+  // The pilot flies: pilot_steps.cpp.
+  void fly_pilot();
   void stuck(const std::string& why);
   /// The target; else the goal, or the point at which the path joins its loiter circle.
   Goal goal_of_pilot() const;
   /// A point of the path half the pilot's reach ahead, or farther if that point is blocked.
   Vec3 local_target() const;
-  /// Takes the nearest clear leg back to the path; false if there is none.
-  bool hand_back();
 
   // Replanning from the vehicle's position: flight_replanning.cpp.
   void ask_replan();
@@ -70,7 +80,7 @@ class Flight {
   Route replan(const Request& request);
   void take_route(Route route, const Request& request);
 
-  // The track, judged in the true world: flight_judging.cpp.
+  // The track, recorded and judged in the true world by track_judge.hpp: track_record.cpp.
   void fly_leg(const State& next);
   /// Updates the separation; the first contact ends the flight.
   void end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1);

@@ -26,7 +26,8 @@ inline double seconds_since(Clock::time_point began) {
 }
 
 /// One run of a pipeline: the top level is in pipeline.cpp, plan and smooth steps in
-/// pipeline_steps.cpp, the flight in pipeline_fly.cpp.
+/// plan_and_smooth.cpp, the judging of their routes in step_judge.cpp, the flight in fly_step.cpp,
+/// and how plugins are called in plugin_calls.cpp.
 class Run {
  public:
   Run(const Config& config, const RunOptions& options);

@@ -55,8 +55,8 @@ class DistanceOracle {
       const Real before = n > 0 ? all[std::size_t(n) - 1] : here;
       const Real after = n < kSamples ? all[std::size_t(n) + 1] : here;
       if (here >= before && here >= after && here + step >= best) {
-        best = std::max(best, -least([&](Real t) { return -at(t); }, Real(n - 1) / kSamples,
-                                     Real(n + 1) / kSamples));
+        best = std::max(best, -minimum([&](Real t) { return -at(t); }, Real(n - 1) / kSamples,
+                                       Real(n + 1) / kSamples));
       }
     }
     return best;
@@ -75,7 +75,7 @@ class DistanceOracle {
   Real post(int i, int j) const { return heights_[std::size_t(j * columns_ + i)]; }
 
   /// Golden section search within [0, 1].
-  static Real least(const std::function<Real(Real)>& f, Real low, Real high) {
+  static Real minimum(const std::function<Real(Real)>& f, Real low, Real high) {
     const Real golden = (std::sqrt(Real(5)) - 1) / 2;
     low = std::max(low, Real(0));
     high = std::min(high, Real(1));
@@ -133,10 +133,10 @@ class DistanceOracle {
     Real best = nearest;
     for (int n = 0; n <= kSamples; ++n) {
       const Real here = all[std::size_t(n)];
-      const bool is_least = (n == 0 || here <= all[std::size_t(n) - 1]) &&
-                            (n == kSamples || here <= all[std::size_t(n) + 1]);
-      if (is_least && here - step < nearest) {
-        best = std::min(best, least(to_segment, Real(n - 1) / kSamples, Real(n + 1) / kSamples));
+      const bool is_min = (n == 0 || here <= all[std::size_t(n) - 1]) &&
+                          (n == kSamples || here <= all[std::size_t(n) + 1]);
+      if (is_min && here - step < nearest) {
+        best = std::min(best, minimum(to_segment, Real(n - 1) / kSamples, Real(n + 1) / kSamples));
       }
     }
     return best;

@@ -194,8 +194,8 @@ class Hills final : public Environment, public Ground {
     const auto slope = [&](const Vec3& from, const Vec3& to, double within) {
       return slope_near(from, to, within);
     };
-    const auto nearest = [&](const Vec3& from, const Vec3& to, double least) {
-      return searched(from, to, least, kit::GroundWithin::Until::nearest).distance();
+    const auto nearest = [&](const Vec3& from, const Vec3& to, double minimum) {
+      return searched(from, to, minimum, kit::GroundWithin::Until::nearest).distance();
     };
     return kit::ground_distance(a, b, kInfinity, surface_.top(), kShortest, gap, slope, nearest);
   }

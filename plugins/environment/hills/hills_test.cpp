@@ -240,16 +240,16 @@ TEST(Hills, LawsHold) {
     const double clearance = hills->clearance(a);
     EXPECT_LE(std::abs(clearance - hills->clearance(b)), (a - b).norm() * (1 + 1e-12) + 1e-9);
     EXPECT_EQ(clearance < 0, a.z() < height(rows, a.x(), a.y()));
-    double least = kInfinity;
+    double minimum = kInfinity;
     hills->near(a, 10000, [&](const Nearby& nearby) {
-      least = nearby.distance;
-      if (least > 0) {
+      minimum = nearby.distance;
+      if (minimum > 0) {
         const Vec3& q = nearby.point;
         EXPECT_NEAR(q.z(), height(rows, q.x(), q.y()), 1e-6);
-        EXPECT_NEAR((q + nearby.normal * least - a).norm(), 0, 1e-6);
+        EXPECT_NEAR((q + nearby.normal * minimum - a).norm(), 0, 1e-6);
       }
     });
-    EXPECT_GE(least, clearance - 1e-6);
+    EXPECT_GE(minimum, clearance - 1e-6);
     const double r = random.uniform(0, 300);
     const bool blocked = hills->blocked(a, b, r);
     EXPECT_EQ(blocked, hills->blocked(b, a, r));
@@ -261,12 +261,12 @@ TEST(Hills, LawsHold) {
       const Vec3 side(random.normal(), random.normal(), -std::abs(random.normal()));
       const Vec3 near_it = on + random.uniform(0, r) * side.normalized();
       EXPECT_TRUE(blocked || near_it.z() > height(rows, near_it.x(), near_it.y()) - 1e-5) << n;
-      if (least > 0 && a.z() - height(rows, a.x(), a.y()) > 0) {
+      if (minimum > 0 && a.z() - height(rows, a.x(), a.y()) > 0) {
         // No sampled ground around a is nearer than near's point by more than 5 %.
-        const Vec3 way = random.uniform(0, 1.5 * least) * side.normalized();
+        const Vec3 way = random.uniform(0, 1.5 * minimum) * side.normalized();
         const Vec3 ground(a.x() + way.x(), a.y() + way.y(),
                           height(rows, a.x() + way.x(), a.y() + way.y()));
-        EXPECT_GT((ground - a).norm(), least * 0.95 - 1e-6);
+        EXPECT_GT((ground - a).norm(), minimum * 0.95 - 1e-6);
       }
     }
     if (lowest > r + (b - a).norm() / 120) {

@@ -68,15 +68,15 @@ class Profile {
       const double far = std::max(w0, w1);
       const double bend_near = over_middle ? -1 : w0 < w1 ? bend0 : bend1;
       const double bend_far = w0 < w1 ? bend1 : bend0;
-      double most = 0;
+      double maximum = 0;
       if (sign < 0) {
-        most = -std::min(bend_near, bend_far);
+        maximum = -std::min(bend_near, bend_far);
       } else if (far < kMaxBendAt) {
-        most = bend_far;
+        maximum = bend_far;
       } else {
-        most = near > kMaxBendAt ? bend_near : kMaxBend;
+        maximum = near > kMaxBendAt ? bend_near : kMaxBend;
       }
-      bound += bell.height / square(bell.width) * most;
+      bound += bell.height / square(bell.width) * maximum;
     }
     return std::max(bound, 0.0);
   }
@@ -232,8 +232,8 @@ double Surface::bend(double x, double y, double r) const {
     const double w = std::max(
         std::sqrt(square((x - peak.x) / peak.sx) + square((y - peak.y) / peak.sy)) - r / narrow,
         0.0);
-    const double most = w > kMaxBendAt ? bell_bend(w) : std::max(std::exp(-w * w / 2), kMaxBend);
-    bound += peak.height / square(narrow) * most;
+    const double maximum = w > kMaxBendAt ? bell_bend(w) : std::max(std::exp(-w * w / 2), kMaxBend);
+    bound += peak.height / square(narrow) * maximum;
   }
   return bound;
 }
@@ -267,9 +267,9 @@ namespace {
 /// Factors along one axis of a bell, over nodes and intervals. Its middle is m, its width s, and
 /// u = (x - m) / s.
 struct Factors {
-  std::vector<double> node;  ///< exp(-u² / 2) at the nodes, all intervals' first ones first
-  std::vector<double> most;  ///< maximum of it in each interval
-  std::vector<double> bend;  ///< maximum of (1 - u²) exp(-u² / 2) / s² in each, or 0
+  std::vector<double> node;     ///< exp(-u² / 2) at the nodes, all intervals' first ones first
+  std::vector<double> maximum;  ///< maximum of it in each interval
+  std::vector<double> bend;     ///< maximum of (1 - u²) exp(-u² / 2) / s² in each, or 0
 
   Factors(const Surface::Intervals& at, int pieces, double m, double s) {
     for (int n = 0; n <= pieces; ++n) {
@@ -280,8 +280,8 @@ struct Factors {
     }
     for (int k = 0; k < at.count; ++k) {
       const double away = std::max(std::abs(at.first + k * at.step - m) - at.half, 0.0) / s;
-      most.push_back(std::exp(-square(away) / 2));
-      bend.push_back(std::max(1 - square(away), 0.0) * most.back() / square(s));
+      maximum.push_back(std::exp(-square(away) / 2));
+      bend.push_back(std::max(1 - square(away), 0.0) * maximum.back() / square(s));
     }
   }
 };
@@ -324,17 +324,17 @@ std::vector<double> Surface::highest(const Intervals& east, const Intervals& nor
         at_nodes[k % columns] = std::max(at_nodes[k % columns], row[k]);
       }
     }
-    std::vector<double> most(columns, base_);
+    std::vector<double> maximum(columns, base_);
     for (std::size_t p = 0; p < peaks_.size(); ++p) {
-      const double factor = peaks_[p].height * y[p].most[j];
+      const double factor = peaks_[p].height * y[p].maximum[j];
       const double factor_bend = peaks_[p].height * y[p].bend[j];
       for (std::size_t i = 0; i < columns; ++i) {
-        most[i] += factor * x[p].most[i];
-        at_nodes[i] += bend_x * factor * x[p].bend[i] + bend_y * factor_bend * x[p].most[i];
+        maximum[i] += factor * x[p].maximum[i];
+        at_nodes[i] += bend_x * factor * x[p].bend[i] + bend_y * factor_bend * x[p].maximum[i];
       }
     }
     for (std::size_t i = 0; i < columns; ++i) {
-      result.push_back(std::min({top_, most[i], at_nodes[i]}));
+      result.push_back(std::min({top_, maximum[i], at_nodes[i]}));
     }
   }
   return result;

@@ -27,8 +27,8 @@ Crossing at_level(const Vec3& from, const Vec3& to, double y) {
   const Vec3& high = up ? to : from;
   const double share = (y - low.y()) / (high.y() - low.y());
   const auto mix = [&](int axis) {
-    const auto [least, most] = std::minmax(low[axis], high[axis]);
-    return std::clamp(low[axis] + share * (high[axis] - low[axis]), least, most);
+    const auto [minimum, maximum] = std::minmax(low[axis], high[axis]);
+    return std::clamp(low[axis] + share * (high[axis] - low[axis]), minimum, maximum);
   };
   return {mix(0), mix(2), up};
 }

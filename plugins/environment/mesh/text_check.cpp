@@ -172,10 +172,10 @@ std::string obj_without_looks(const std::string& file, const std::string& text,
     } else {
       lines.refuse("a statement of an OBJ file (v, f, vn, vt, o, g, s, usemtl, …)");
     }
-    const std::size_t most = words[0] == "v" ? 4 : words.size();
-    for (std::size_t i = 0; i < most; ++i) {
+    const std::size_t maximum = words[0] == "v" ? 4 : words.size();
+    for (std::size_t i = 0; i < maximum; ++i) {
       kept += vertex_of(words[i]);
-      kept += i + 1 < most ? ' ' : '\n';
+      kept += i + 1 < maximum ? ' ' : '\n';
     }
   }
   return kept;

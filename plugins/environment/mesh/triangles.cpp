@@ -109,18 +109,18 @@ double leg_distance(const Triangle& triangle, const Vec3& a, const Vec3& b) {
   if (!is_thin(triangle, normal) && crossing(triangle, normal, a, b) >= 0) {
     return 0;
   }
-  double least =
+  double minimum =
       std::min((nearest_point(triangle, a) - a).norm(), (nearest_point(triangle, b) - b).norm());
   for (std::size_t i = 0; i < 3; ++i) {
-    least = std::min(least, approach(a, b, triangle[i], triangle[(i + 1) % 3]).distance);
+    minimum = std::min(minimum, approach(a, b, triangle[i], triangle[(i + 1) % 3]).distance);
   }
-  return least;
+  return minimum;
 }
 
 double box_distance(const Triangle& triangle, const Box& box) {
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t i = 0; i < 3; ++i) {
-    least = std::min(least, kit::outside(box, triangle[i]));
+    minimum = std::min(minimum, kit::outside(box, triangle[i]));
     if (kit::may_reach(box, triangle[i], triangle[(i + 1) % 3], 0)) {
       return 0;
     }
@@ -132,10 +132,10 @@ double box_distance(const Triangle& triangle, const Box& box) {
       from[(axis + 2) % 3] = (side & 2) != 0 ? box.max[(axis + 2) % 3] : from[(axis + 2) % 3];
       Vec3 to = from;
       to[axis] = box.max[axis];
-      least = std::min(least, leg_distance(triangle, from, to));
+      minimum = std::min(minimum, leg_distance(triangle, from, to));
     }
   }
-  return least;
+  return minimum;
 }
 
 void add_meetings(const Triangle& triangle, const Vec3& a, const Vec3& b, double distance,

@@ -142,16 +142,16 @@ TEST(Radar, MaskedLegsAreNeverFreeWhereAPlaceIsCovered) {
     const Vec3 a(random.uniform(-1900, 1900), random.uniform(1000, 1900), random.uniform(0, 200));
     const Vec3 b =
         a + Vec3(random.uniform(-600, 600), random.uniform(-50, 50), random.uniform(-40, 40));
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (int m = 0; m <= 500; ++m) {
-      least = std::min(least, radar->clearance(a + m / 500.0 * (b - a)));
+      minimum = std::min(minimum, radar->clearance(a + m / 500.0 * (b - a)));
     }
     const double r = random.uniform(0, 20);
     const bool blocked = radar->blocked(a, b, r);
     (blocked ? blocked_legs : free_legs) += 1;
-    if (least < r - 1e-6) {
+    if (minimum < r - 1e-6) {
       EXPECT_TRUE(blocked) << n;
-    } else if (least > r + radar->over_approximation() + (b - a).norm() / 500) {
+    } else if (minimum > r + radar->over_approximation() + (b - a).norm() / 500) {
       EXPECT_FALSE(blocked) << n;
     }
     EXPECT_EQ(blocked, radar->blocked(b, a, r));

@@ -34,13 +34,14 @@ std::vector<Point2> outline(const Shape& shape) {
 }
 
 double between(const std::vector<Point2>& ring, const std::vector<Point2>& other) {
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (const Point2& p : ring) {
     for (std::size_t n = 0; n < other.size(); ++n) {
-      least = std::min(least, oracle::to_edge(other[n], other[(n + 1) % other.size()], p[0], p[1]));
+      minimum =
+          std::min(minimum, oracle::to_edge(other[n], other[(n + 1) % other.size()], p[0], p[1]));
     }
   }
-  return least;
+  return minimum;
 }
 
 TEST(RandomZones, FirstOnesOfSeedOne) {

@@ -256,12 +256,12 @@ void expect_few(const Params& params, const Dem& dem, const Part& part) {
     return std::to_string(columns) + " x " + std::to_string(rows);
   };
   const std::string declared = "declares " + size(dem.columns, dem.rows) + " posts, ";
-  const std::string most = "more than max_posts (" + std::to_string(params.max_posts) + ")";
+  const std::string maximum = "more than max_posts (" + std::to_string(params.max_posts) + ")";
   if (std::int64_t(part.columns) * part.rows > params.max_posts) {
     const bool whole = part.columns == dem.columns && part.rows == dem.rows;
     refuse(params,
            declared + (whole ? "" : size(part.columns, part.rows) + " of them about the volume, ") +
-               most,
+               maximum,
            "max_posts");
   }
   if (dem.band != nullptr) {
@@ -271,7 +271,8 @@ void expect_few(const Params& params, const Dem& dem, const Part& part) {
     columns = std::min(columns, dem.columns);
     rows = std::min(rows, dem.rows);
     if (std::int64_t(columns) * rows > params.max_posts) {
-      refuse(params, declared + "in blocks of " + size(columns, rows) + ", " + most, "max_posts");
+      refuse(params, declared + "in blocks of " + size(columns, rows) + ", " + maximum,
+             "max_posts");
     }
   }
 }

@@ -226,9 +226,9 @@ TEST(Terrain, LawsHoldOnRealGround) {
     EXPECT_LE(std::abs(layer->clearance(q) - clearance), (q - p).norm() * (1 + 1e-9) + 1e-9);
     const auto ground = layer->ground()->height(p.x(), p.y());
     EXPECT_EQ(clearance<0, ground&& * ground> p.z());
-    double least = kInfinity;
+    double minimum = kInfinity;
     layer->near(p, 5000, [&](const Nearby& nearby) {
-      least = std::min(least, nearby.distance);
+      minimum = std::min(minimum, nearby.distance);
       EXPECT_NEAR(nearby.normal.norm(), 1, 1e-9);
       if (clearance > 0) {
         const double height = *layer->ground()->height(nearby.point.x(), nearby.point.y());
@@ -240,7 +240,7 @@ TEST(Terrain, LawsHoldOnRealGround) {
         EXPECT_NEAR((p - nearby.point).norm(), nearby.distance, 1e-6);
       }
     });
-    EXPECT_GE(least, clearance - 1e-6);
+    EXPECT_GE(minimum, clearance - 1e-6);
     // Blocked is true if the ground near a sample of the leg is nearer than r, and false if
     // clearance exceeds r everywhere.
     const double r = random.uniform(0, 60);

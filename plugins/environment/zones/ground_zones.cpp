@@ -73,30 +73,30 @@ GroundZones::Zone GroundZones::zone_of(const World& ground, GroundPrism&& prism)
 
 double GroundZones::distance(const Zone& zone, const Vec3& p) const {
   const GroundPrism& limits = zone.limits;
-  double most = std::max(
+  double maximum = std::max(
       {signed_distance(zone.outline, p), limits.prism.floor - p.z(), p.z() - limits.prism.ceiling});
   const Vec3 over = within(zone.area, p);
   if (const auto ground = ground_.ground(over.x(), over.y())) {
     const double above = p.z() - *ground;
-    most = std::max({most, (limits.above_floor - above) / zone.steepness,
-                     (above - limits.above_ceiling) / zone.steepness});
+    maximum = std::max({maximum, (limits.above_floor - above) / zone.steepness,
+                        (above - limits.above_ceiling) / zone.steepness});
   }
-  return most;
+  return maximum;
 }
 
 double GroundZones::clearance(const Vec3& p) const {
-  double least = kInfinity;
+  double minimum = kInfinity;
   // No zone is nearer than its outline.
   double reach = std::max(outlines_.clearance(p), 0.0);
   const auto take = [&](const Nearby& outline) {
-    least = std::min(least, distance(zones_[std::size_t(outline.id)], p));
+    minimum = std::min(minimum, distance(zones_[std::size_t(outline.id)], p));
   };
   outlines_.near(p, reach, take);
-  if (least > reach) {
-    reach = least;
+  if (minimum > reach) {
+    reach = minimum;
     outlines_.near(p, reach, take);
   }
-  return least;
+  return minimum;
 }
 
 bool GroundZones::blocked(const Vec3& a, const Vec3& b, double r) const {
@@ -206,12 +206,12 @@ void GroundZones::rasterize(VoxelGrid& grid) const {
 }
 
 double GroundZones::over_approximation(double r) const {
-  double most = 0;
+  double maximum = 0;
   for (const Zone& zone : zones_) {
     // A point r from the outline, and r √(1 + s²) above a limit that is s r higher at the outline.
-    most = std::max(most, r * (std::hypot(1, zone.steepness + zone.slope) - 1));
+    maximum = std::max(maximum, r * (std::hypot(1, zone.steepness + zone.slope) - 1));
   }
-  return most;
+  return maximum;
 }
 
 Shape GroundZones::drawn(std::size_t zone) const {

@@ -136,7 +136,7 @@ constexpr Limits kLimits[] = {
 
 // The least excess over the limits along the part of a leg that lies over the outline, by samples
 // that are refined where it is least.
-double least_outside(const HeightField& field, const Limits& limits, const Vec3& a, const Vec3& b) {
+double min_outside(const HeightField& field, const Limits& limits, const Vec3& a, const Vec3& b) {
   const auto outside = [&](double t) {
     const Vec3 p = a + t * (b - a);
     return is_over(kConcave, p) ? limits.outside(p.z(), p.z() - *field.at(p.x(), p.y()))
@@ -144,14 +144,14 @@ double least_outside(const HeightField& field, const Limits& limits, const Vec3&
   };
   double low = 0;
   double high = 1;
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (int level = 0; level < 5; ++level) {
     const int steps = level == 0 ? 3000 : 60;
     double best = low;
     for (int n = 0; n <= steps; ++n) {
       const double t = low + (high - low) * n / steps;
-      if (outside(t) < least) {
-        least = outside(t);
+      if (outside(t) < minimum) {
+        minimum = outside(t);
         best = t;
       }
     }
@@ -159,7 +159,7 @@ double least_outside(const HeightField& field, const Limits& limits, const Vec3&
     low = std::max(best - step, 0.0);
     high = std::min(best + step, 1.0);
   }
-  return least;
+  return minimum;
 }
 
 TEST_F(Published, LimitsAboveGroundAreExactForLegs) {
@@ -174,14 +174,14 @@ TEST_F(Published, LimitsAboveGroundAreExactForLegs) {
       Vec3 b(random.uniform(50, 1750), random.uniform(50, 1750), 0);
       a.z() = *posts_->field().at(a.x(), a.y()) + random.uniform(-10, 130);
       b.z() = *posts_->field().at(b.x(), b.y()) + random.uniform(-10, 130);
-      const double least = least_outside(posts_->field(), limits, a, b);
+      const double minimum = min_outside(posts_->field(), limits, a, b);
       const bool blocked = layer->blocked(a, b, 0);
       blocked_legs += blocked;
-      close_calls += std::abs(least) < 1;
+      close_calls += std::abs(minimum) < 1;
       // Corners of the file are rounded to a millimetre.
-      if (std::abs(least) > 0.01) {
-        EXPECT_EQ(blocked, least < 0)
-            << limits.lower << " to " << limits.upper << ", leg " << n << ", " << least;
+      if (std::abs(minimum) > 0.01) {
+        EXPECT_EQ(blocked, minimum < 0)
+            << limits.lower << " to " << limits.upper << ", leg " << n << ", " << minimum;
       }
     }
     EXPECT_GT(blocked_legs, 60) << limits.lower;
@@ -224,13 +224,13 @@ TEST_F(Published, ManyZonesAnswerAsEachOfThem) {
         a + random.uniform(0, 1) *
                 Vec3(random.uniform(-300, 300), random.uniform(-300, 300), random.uniform(-60, 60));
     const double r = n % 3 == 0 ? 0 : random.uniform(0, 40);
-    double least = kInfinity;
+    double minimum = kInfinity;
     bool blocked = false;
     for (const auto& one : each) {
-      least = std::min(least, one->clearance(a));
+      minimum = std::min(minimum, one->clearance(a));
       blocked = blocked || one->blocked(a, b, r);
     }
-    EXPECT_EQ(layer->clearance(a), least) << n;
+    EXPECT_EQ(layer->clearance(a), minimum) << n;
     EXPECT_EQ(layer->blocked(a, b, r), blocked) << n;
   }
 }

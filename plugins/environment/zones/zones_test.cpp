@@ -109,18 +109,18 @@ TEST(Zones, KeepInLegsAgreeWithSamples) {
     const Vec3 a(random.uniform(0, 110), random.uniform(0, 100), random.uniform(0, 80));
     const Vec3 b =
         a + Vec3(random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-9, 9));
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (int m = 0; m <= 2000; ++m) {
-      least = std::min(least, layer->clearance(a + m / 2000.0 * (b - a)));
+      minimum = std::min(minimum, layer->clearance(a + m / 2000.0 * (b - a)));
     }
     const double spacing = (b - a).norm() / 2000;
-    if (least <= 0) {
+    if (minimum <= 0) {
       continue;
     }
     ++free_legs;
-    EXPECT_TRUE(layer->blocked(a, b, least + 2e-6)) << n;
-    if (least > spacing) {
-      EXPECT_FALSE(layer->blocked(a, b, least - spacing)) << n;
+    EXPECT_TRUE(layer->blocked(a, b, minimum + 2e-6)) << n;
+    if (minimum > spacing) {
+      EXPECT_FALSE(layer->blocked(a, b, minimum - spacing)) << n;
     }
   }
   EXPECT_GT(free_legs, 300);

@@ -151,17 +151,17 @@ TEST(Apf, SearchesForAWayOutInBoundedStepsAndNotTwice) {
     return asked->legs;
   };
   constexpr int kMaxLooks = 128;  // each except the first is one leg away from another
-  int most = 0;
-  int least = std::numeric_limits<int>::max();
+  int maximum = 0;
+  int minimum = std::numeric_limits<int>::max();
   for (int step = 0; step < 12; ++step) {
     const int legs = legs_asked(0);
-    most = std::max(most, legs);
-    least = std::min(least, legs);
+    maximum = std::max(maximum, legs);
+    minimum = std::min(minimum, legs);
   }
-  EXPECT_LE(most - least, kMaxLooks);
-  EXPECT_GT(most, least) << "it searches,";
-  EXPECT_EQ(legs_asked(0), least) << "and no more once all searches have failed,";
-  EXPECT_GT(legs_asked(10), least) << "until all fly otherwise";
+  EXPECT_LE(maximum - minimum, kMaxLooks);
+  EXPECT_GT(maximum, minimum) << "it searches,";
+  EXPECT_EQ(legs_asked(0), minimum) << "and no more once all searches have failed,";
+  EXPECT_GT(legs_asked(10), minimum) << "until all fly otherwise";
 }
 }  // namespace
 }  // namespace altiplan::testing::apf_step_cost_test

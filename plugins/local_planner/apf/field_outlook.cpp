@@ -111,9 +111,9 @@ double Outlook::seconds_to_contact(const Vec3& from, double after_s, const Vec3&
 }
 
 bool Outlook::is_open(const Vec3& a, const Vec3& b, double room) const {
-  const auto& least = request_.limits.min_ground_clearance;
+  const auto& minimum = request_.limits.min_ground_clearance;
   return request_.volume.contains(b, kLengthTolerance) && world_->ground_below(a, b) &&
-         !is_blocked(a, b, room) && (!least || world_->ground_gap(a, b, *least) >= *least);
+         !is_blocked(a, b, room) && (!minimum || world_->ground_gap(a, b, *minimum) >= *minimum);
 }
 
 std::optional<double> Outlook::seconds_to_safety(const Vec3& from, double after_s,

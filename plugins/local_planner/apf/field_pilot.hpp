@@ -99,9 +99,9 @@ class FieldPilot final : public Pilot {
   /// Predicted length of the flight to the local target on that side, left or right, of everything
   /// in the way, including what the detour meets next.
   double length_along(Passing passing) const;
-  /// The path past that side; `aside` is empty if it is certainly longer than `most`.
-  Detour past(const Vec3& way, Passing passing, double most) const;
-  std::optional<Vec3> min_turned(const Vec3& way, Passing passing, double most) const;
+  /// The path past that side; `aside` is empty if it is certainly longer than `maximum`.
+  Detour past(const Vec3& way, Passing passing, double maximum) const;
+  std::optional<Vec3> min_turned(const Vec3& way, Passing passing, double maximum) const;
 
   // The step actually flown: field_heading.cpp.
   /// Straight to the goal over the last steps, unless something forbids it: the field would push

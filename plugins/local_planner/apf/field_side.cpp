@@ -83,14 +83,14 @@ FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observat
                                             const Vec3& way) {
   const bool first =
       chosen.passing == Passing::nothing || !(is_level(chosen.passing) || chosen.aside);
-  const double most = first ? kInfinity : kMuchShorter * chosen.length;
-  if (most <= way.norm()) {
+  const double maximum = first ? kInfinity : kMuchShorter * chosen.length;
+  if (maximum <= way.norm()) {
     return chosen;  // straight through would not be much shorter
   }
-  const Detour left = past(way, Passing::left, most);
-  const Detour right = past(way, Passing::right, first ? most : std::min(most, left.length));
+  const Detour left = past(way, Passing::left, maximum);
+  const Detour right = past(way, Passing::right, first ? maximum : std::min(maximum, left.length));
   Detour best = left.length < right.length ? left : right;
-  if (left.length == right.length && (first || left.length < most)) {
+  if (left.length == right.length && (first || left.length < maximum)) {
     sum_up(seen);
     best = bearing_change(way, force_) >= 0 ? left : right;
   }
@@ -100,17 +100,17 @@ FieldPilot::Detour FieldPilot::shorter_than(const Detour& chosen, const Observat
     if (along_left != along_right) {
       best = along_left < along_right ? left : right;
     }
-  } else if (is_level(chosen.passing) && best.length < most &&
+  } else if (is_level(chosen.passing) && best.length < maximum &&
              length_along(best.passing) >= kMuchShorter * length_along(chosen.passing)) {
     best = chosen;
   }
   for (const Passing passing : {Passing::above, Passing::below}) {
-    const Detour detour = past(way, passing, std::min(most, best.length));
+    const Detour detour = past(way, passing, std::min(maximum, best.length));
     if (detour.length < best.length) {
       best = detour;
     }
   }
-  return first || best.length < most ? best : chosen;
+  return first || best.length < maximum ? best : chosen;
 }
 
 bool FieldPilot::is_free_way(const Vec3& from, double after, const Vec3& way) const {
@@ -137,8 +137,8 @@ std::optional<Vec3> FieldPilot::free_way(const Vec3& from, double after, const V
                                                                           : std::nullopt;
 }
 
-FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double most) const {
-  Detour detour{passing, min_turned(way, passing, most), kInfinity};
+FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double maximum) const {
+  Detour detour{passing, min_turned(way, passing, maximum), kInfinity};
   if (detour.aside) {
     const Vec3& aside = *detour.aside;
     detour.length = 2 * aside.norm() + (way - aside).norm();
@@ -153,7 +153,7 @@ FieldPilot::Detour FieldPilot::past(const Vec3& way, Passing passing, double mos
   return detour;
 }
 
-std::optional<Vec3> FieldPilot::min_turned(const Vec3& way, Passing passing, double most) const {
+std::optional<Vec3> FieldPilot::min_turned(const Vec3& way, Passing passing, double maximum) const {
   const bool level = is_level(passing);
   const int sign = passing == Passing::left || passing == Passing::above ? 1 : -1;
   constexpr int kClimbs = 4;
@@ -168,7 +168,7 @@ std::optional<Vec3> FieldPilot::min_turned(const Vec3& way, Passing passing, dou
       turned = Vec3(way.x(), way.y(), flat * std::tan(climb)).normalized() * way.norm();
     }
     // The shortest possible flight at such an offset; farther aside it is no shorter.
-    if (const Vec3 on = turned / kParts; on.norm() + (way - on).norm() > most) {
+    if (const Vec3 on = turned / kParts; on.norm() + (way - on).norm() > maximum) {
       return std::nullopt;
     }
     if (const auto aside = free_way(here_, 0, turned, level)) {

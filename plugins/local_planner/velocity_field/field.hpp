@@ -85,8 +85,9 @@ inline double min_circle(double step, double min_radius, double min_fillet) {
 /// A bound on the change of heading, computed once for many steps.
 class TurnLimit {
  public:
-  explicit TurnLimit(double most) : most_(most), cos_(std::cos(most)), sin_(std::sin(most)) {}
-  double most() const { return most_; }
+  explicit TurnLimit(double maximum)
+      : max_turn_(maximum), cos_(std::cos(maximum)), sin_(std::sin(maximum)) {}
+  double maximum() const { return max_turn_; }
   /// `wish` if it is at most the limit away from `heading`, else the heading turned toward it by
   /// the limit. Unit vectors. A wish straight back turns left.
   Vec2 held(const Vec2& heading, const Vec2& wish) const {
@@ -98,7 +99,7 @@ class TurnLimit {
   }
 
  private:
-  double most_;
+  double max_turn_;
   double cos_;
   double sin_;
 };

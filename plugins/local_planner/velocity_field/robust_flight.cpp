@@ -38,14 +38,14 @@ void RobustFlight::set_world(const Vec2& goal, double tolerance_m, const Vec2& a
 /// amount that a chord of the tightest turn cuts off.
 void RobustFlight::find_guide(const Vec2& at, const std::optional<Vec2>& course) {
   const double radius = steps().radius_m();
-  const double least = steps().length_m() * steps().length_m() / (8 * radius);
+  const double minimum = steps().length_m() * steps().length_m() / (8 * radius);
   ++counts_.guides;
   along_ = 0;
   circling_ = 0;
-  guide_ = guide_with(least, at, course);
+  guide_ = guide_with(minimum, at, course);
   pushed_ = false;
   const double max_m = kDetour * guide_.length_m();
-  for (double berth = std::min(field_.balance(), radius); berth > least && !guide_.empty();
+  for (double berth = std::min(field_.balance(), radius); berth > minimum && !guide_.empty();
        berth /= 4) {
     Guide wide = guide_with(berth, at, course);
     if (!wide.empty() && wide.length_m() <= max_m) {
@@ -198,12 +198,12 @@ std::optional<Pose> RobustFlight::begin_flight(const Vec2& at, const Vec2& wish)
 
 Pose RobustFlight::roomiest(const Pose& pose) const {
   const auto room = [&](const Pose& at) {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const std::uint32_t n : threats_->near(at.at)) {
       const Disc& disc = threats_->all()[n];
-      least = std::min(least, (at.at - disc.centre).norm() - disc.radius);
+      minimum = std::min(minimum, (at.at - disc.centre).norm() - disc.radius);
     }
-    return least;
+    return minimum;
   };
   Pose best = steps().after(pose.at, pose.course);
   for (const int side : {1, -1}) {

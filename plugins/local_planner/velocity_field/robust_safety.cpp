@@ -13,7 +13,7 @@ Steps::Steps(double length_m, double min_radius_m, double max_turn)
     : length_m_(length_m),
       radius_m_(std::max(min_radius_m, length_m / (2 * std::sin(std::min(max_turn, kPi / 2) / 2)))),
       limit_(velocity_field::max_turn(length_m, radius_m_)),
-      half_(limit_.most() / 2) {}
+      half_(limit_.maximum() / 2) {}
 
 Pose Steps::turned(const Pose& pose, int side) const {
   return after(pose.at, limit_.held(pose.course, side * left_of(pose.course)));

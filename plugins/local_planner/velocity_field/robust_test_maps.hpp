@@ -31,11 +31,11 @@ inline bool enters_one(const std::vector<Disc>& discs, const Vec2& a, const Vec2
     // An independent formulation: by the nearest of both ends and the foot between them.
     const Vec2 ab = b - a;
     const Vec2 ac = disc.centre - a;
-    double least = std::min(ac.norm(), (disc.centre - b).norm());
+    double minimum = std::min(ac.norm(), (disc.centre - b).norm());
     if (ac.dot(ab) > 0 && ac.dot(ab) < ab.squaredNorm()) {
-      least = std::min(least, std::abs(cross(ab, ac)) / ab.norm());
+      minimum = std::min(minimum, std::abs(cross(ab, ac)) / ab.norm());
     }
-    return least < disc.radius;
+    return minimum < disc.radius;
   });
 }
 

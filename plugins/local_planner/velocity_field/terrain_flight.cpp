@@ -164,10 +164,10 @@ double TerrainFlight::wished_climb(const Vec3& here, double radius) const {
 }
 
 TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& wish, double climb,
-                                              double most) const {
+                                              double maximum) const {
   // cos of the turn in 3-D = cos(change of climb) - cos cos (1 - cos of the turn of heading)
   const double flat = std::cos(now.climb) * std::cos(climb);
-  const double room = std::cos(climb - now.climb) - std::cos(most);
+  const double room = std::cos(climb - now.climb) - std::cos(maximum);
   const double cosine = std::clamp(std::max(1 - room / flat, std::cos(max_turn_level_)), -1.0, 1.0);
   if (now.heading.dot(wish) >= cosine) {
     return {wish, climb};
@@ -178,18 +178,18 @@ TerrainFlight::Attitude TerrainFlight::turned(const Attitude& now, const Vec2& w
 
 TerrainFlight::Attitude TerrainFlight::within_radius(const Vec3& here, const Attitude& now,
                                                      const Vec2& wish, double length) {
-  const double most =
+  const double maximum =
       std::min(max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
   if (!climbs()) {
-    return turned(now, wish, 0, most);
+    return turned(now, wish, 0, maximum);
   }
   const double radius = radius_at(length);
-  const double steepest = std::max(std::min(now.climb + most, max_climb_), now.climb - most);
-  const double flattest = std::min(std::max(now.climb - most, -max_climb_), now.climb + most);
+  const double steepest = std::max(std::min(now.climb + maximum, max_climb_), now.climb - maximum);
+  const double flattest = std::min(std::max(now.climb - maximum, -max_climb_), now.climb + maximum);
   const double wished = std::clamp(wished_climb(here, radius), flattest, steepest);
   for (int n = 0; n <= kClimbs; ++n) {
     const double climb = wished + n * (steepest - wished) / kClimbs;
-    const Attitude next = turned(now, wish, climb, most);
+    const Attitude next = turned(now, wish, climb, maximum);
     const Vec2 there = here.head<2>() + length * std::cos(climb) * next.heading;
     const double height = here.z() + length * std::sin(climb);
     if (!sections_ || height >= sections_->safe_height(there) + lag(climb, radius)) {
@@ -197,17 +197,17 @@ TerrainFlight::Attitude TerrainFlight::within_radius(const Vec3& here, const Att
     }
   }
   ++low_steps_;
-  return turned(now, wish, steepest, most);
+  return turned(now, wish, steepest, maximum);
 }
 
 bool TerrainFlight::is_last_leg(const Vec3& here, const std::vector<Disc>& threats,
-                                const Attitude& now, double most) const {
+                                const Attitude& now, double maximum) const {
   const Vec3 way = goal_ - here;
   const double left = way.head<2>().norm();
   const double climb = std::atan2(way.z(), left);
-  const double turn = std::min(most, max_turn_level_);
+  const double turn = std::min(maximum, max_turn_level_);
   return left > 0 && left <= reach() && std::abs(climb) <= max_climb_ &&
-         now.climb >= climb - most && now.heading.dot(way.head<2>() / left) >= std::cos(turn) &&
+         now.climb >= climb - maximum && now.heading.dot(way.head<2>() / left) >= std::cos(turn) &&
          (!sections_ || sections_->is_above(here, goal_)) &&
          std::none_of(threats.begin(), threats.end(), [&](const Disc& disc) {
            const Vec3 centre(disc.centre.x(), disc.centre.y(), 0);
@@ -224,15 +224,15 @@ Vec3 TerrainFlight::step(const State& state, const std::vector<Disc>& threats, c
   const Attitude now = fast > 0
                            ? Attitude{velocity.head<2>() / fast, std::atan2(velocity.z(), fast)}
                            : Attitude{wish, 0};
-  const double most =
+  const double maximum =
       std::min(max_turn(length, min_circle(length, min_radius_, min_fillet_)), max_turn_space_);
-  last_leg_ = climbs() && is_last_leg(here, threats, now, most);
+  last_leg_ = climbs() && is_last_leg(here, threats, now, maximum);
   Attitude next;
   if (last_leg_) {
     const Vec3 way = goal_ - here;
-    const double climb =
-        std::clamp(std::atan2(way.z(), way.head<2>().norm()), now.climb - most, now.climb + most);
-    next = turned(now, way.head<2>().normalized(), climb, most);
+    const double climb = std::clamp(std::atan2(way.z(), way.head<2>().norm()), now.climb - maximum,
+                                    now.climb + maximum);
+    next = turned(now, way.head<2>().normalized(), climb, maximum);
   } else {
     next = within_radius(here, now, wish, length);
     turn_limit_steps_ += next.heading != wish;

@@ -53,12 +53,12 @@ class TerrainFlight {
   /// The climb that leads to the level, or down to the goal.
   double wished_climb(const Vec3& here, double radius) const;
   /// The climb, and the heading as near to the wish as the radius then allows.
-  Attitude turned(const Attitude& now, const Vec2& wish, double climb, double most) const;
+  Attitude turned(const Attitude& now, const Vec2& wish, double climb, double maximum) const;
   Attitude within_radius(const Vec3& here, const Attitude& now, const Vec2& wish, double length);
   /// True if a straight leg to the goal is free and satisfies every limit. A flight that is not yet
   /// as steep as the leg descends to it from above.
   bool is_last_leg(const Vec3& here, const std::vector<Disc>& threats, const Attitude& now,
-                   double most) const;
+                   double maximum) const;
 
   // Requirements.
   Box volume_;

@@ -12,8 +12,8 @@ using altiplan::SplitMix64;
 struct Spread {
   std::size_t count;
   double side;
-  double least;
-  double most;
+  double minimum;
+  double maximum;
 };
 
 std::vector<Disc> drawn(const Spread& spread, std::uint64_t seed) {
@@ -22,7 +22,8 @@ std::vector<Disc> drawn(const Spread& spread, std::uint64_t seed) {
   for (std::size_t i = 0; i < spread.count; ++i) {
     const double x = spread.side * (random.uniform() - 0.5);
     const double y = spread.side * (random.uniform() - 0.5);
-    discs.push_back({{x, y}, spread.least + (spread.most - spread.least) * random.uniform()});
+    discs.push_back(
+        {{x, y}, spread.minimum + (spread.maximum - spread.minimum) * random.uniform()});
   }
   return discs;
 }

@@ -42,17 +42,17 @@ TEST(Field, GuidesTowardTheTarget) {
 }
 
 TEST(TurnLimit, TurnsByTheLimitExactlyOrNotAtAll) {
-  const double most = max_turn(30, 500);
-  EXPECT_NEAR(2 * 500 * std::sin(most / 2), 30, 1e-12);
+  const double maximum = max_turn(30, 500);
+  EXPECT_NEAR(2 * 500 * std::sin(maximum / 2), 30, 1e-12);
   EXPECT_EQ(max_turn(1000, 500), kPi);
   EXPECT_EQ(max_turn(1001, 500), kPi);
-  const TurnLimit limit(most);
+  const TurnLimit limit(maximum);
   for (int degree = -179; degree < 180; ++degree) {
     const Vec2 heading(std::cos(0.7), std::sin(0.7));
     const Vec2 wish(std::cos(0.7 + radians(degree)), std::sin(0.7 + radians(degree)));
     const Vec2 held = limit.held(heading, wish);
     const double turned = std::atan2(cross(heading, held), heading.dot(held));
-    EXPECT_NEAR(turned, std::clamp(radians(degree), -most, most), 1e-12) << degree;
+    EXPECT_NEAR(turned, std::clamp(radians(degree), -maximum, maximum), 1e-12) << degree;
     EXPECT_NEAR(held.norm(), 1, 1e-15);
   }
 }
@@ -131,13 +131,13 @@ TEST(PaperTable, ClearanceAndJudge) {
   const Request request = table1();
   const Flown flown = flight(request);
   EXPECT_TRUE(check(flown.route, request).ok());
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t i = 1; i < flown.route.size(); ++i) {
     for (const Cylinder& threat : kTable1) {
-      least = std::min(least, leg_distance(threat, flown.route[i - 1], flown.route[i]));
+      minimum = std::min(minimum, leg_distance(threat, flown.route[i - 1], flown.route[i]));
     }
   }
-  EXPECT_NEAR(least, 427, 2);
+  EXPECT_NEAR(minimum, 427, 2);
 }
 
 TEST(PaperTable, FewPointsStay) {

@@ -18,11 +18,11 @@ class Lengths {
 
   /// From a point to the nearest target.
   double to_target(const Point& p) const {
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const Target& target : targets_) {
-      least = std::min(least, target.g + level_.length(target.at.x - p.x, target.at.y - p.y));
+      minimum = std::min(minimum, target.g + level_.length(target.at.x - p.x, target.at.y - p.y));
     }
-    return least;
+    return minimum;
   }
 
   /// From a node's root over its interval.
@@ -35,7 +35,7 @@ class Lengths {
       return target.g + (node.bends ? over(root, node.from, node.line, target.at)
                                     : level_.length(target.at.x - root.x, target.at.y - root.y));
     }
-    double least = std::numeric_limits<double>::infinity();
+    double minimum = std::numeric_limits<double>::infinity();
     for (const Target& target : targets_) {
       // A target on the root's side of the line is mirrored in it.
       const bool behind = (target.at.y < node.line) == (root.y < node.line);
@@ -44,9 +44,9 @@ class Lengths {
       const double length = x < node.from ? over(root, node.from, node.line, at)
                             : x > node.to ? over(root, node.to, node.line, at)
                                           : level_.length(at.x - root.x, at.y - root.y);
-      least = std::min(least, target.g + length);
+      minimum = std::min(minimum, target.g + length);
     }
-    return least;
+    return minimum;
   }
 
   /// Where the straight line from the root to a point crosses a line between them.

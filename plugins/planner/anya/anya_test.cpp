@@ -65,13 +65,13 @@ TEST(Anya, BudgetAndCancellation) {
   Request request = serpentine(40, 41).request(0, 40 * 41 - 1);
   const std::int64_t all = counter(planner->plan(request), "expanded");
   EXPECT_GT(all, 30);
-  for (const std::int64_t most : {std::int64_t{0}, std::int64_t{7}, all - 1}) {
-    request.budget.max_iterations = std::uint64_t(most);
+  for (const std::int64_t maximum : {std::int64_t{0}, std::int64_t{7}, all - 1}) {
+    request.budget.max_iterations = std::uint64_t(maximum);
     const PlanResult part = planner->plan(request);
     EXPECT_EQ(part.status, PlanStatus::timed_out);
     EXPECT_TRUE(part.budget_hit);
     EXPECT_FALSE(part.proved);
-    EXPECT_EQ(counter(part, "expanded"), most);
+    EXPECT_EQ(counter(part, "expanded"), maximum);
     EXPECT_EQ(part.message.find("the budget was used up"), 0u) << part.message;
   }
   request.budget.max_iterations = std::uint64_t(all + 1);

@@ -190,12 +190,12 @@ TEST(AStarAnytime, MoreIterationsNeverGiveALongerRouteAndAllOfThemTheShortest) {
       EXPECT_NEAR(length(whole.route), length(plain.route), 1e-9 * length(plain.route)) << name;
       EXPECT_FALSE(whole.budget_hit);
       double before = kInfinity;
-      for (std::int64_t most = 8; most < 2 * expanded(whole); most += most / 2) {
-        request.budget.max_iterations = std::uint64_t(most);
+      for (std::int64_t maximum = 8; maximum < 2 * expanded(whole); maximum += maximum / 2) {
+        request.budget.max_iterations = std::uint64_t(maximum);
         const PlanResult result = planner->plan(request);
-        EXPECT_LE(expanded(result), most);
+        EXPECT_LE(expanded(result), maximum);
         const double now = result.status == PlanStatus::solved ? length(result.route) : kInfinity;
-        EXPECT_LE(now, before + 1e-9) << name << ", " << most << " iterations";
+        EXPECT_LE(now, before + 1e-9) << name << ", " << maximum << " iterations";
         improved += now < before - 1e-6 && before < kInfinity;
         before = now;
       }

@@ -78,11 +78,11 @@ class Balls final : public Environment {
     return box.grown(radius);
   }
   double do_clearance(const Vec3& p) const override {
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (const Vec3& c : centres) {
-      least = std::min(least, (c - p).norm() - radius);
+      minimum = std::min(minimum, (c - p).norm() - radius);
     }
-    return least;
+    return minimum;
   }
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     for (const Vec3& c : centres) {

@@ -161,11 +161,11 @@ class StepSearch {
 
   std::uint32_t heuristic(const Cell& c) const {
     if (settings_.heuristic == kit::Heuristic::octile && !goal_links_.empty()) {
-      std::uint32_t least = ~std::uint32_t{0};
+      std::uint32_t minimum = ~std::uint32_t{0};
       for (const GoalLink& link : goal_links_) {
-        least = std::min(least, costs_.between(c, link.cell) + link.cost);
+        minimum = std::min(minimum, costs_.between(c, link.cell) + link.cost);
       }
-      return least;
+      return minimum;
     }
     return other_heuristic(c);
   }

@@ -90,7 +90,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     }
     for (const Side side : {forward, backward}) {
       const Vec3& end = side == forward ? goal_ : start_;
-      if (!is_better(least(side) - settings_.weight_g * costs_.at(end))) {
+      if (!is_better(minimum(side) - settings_.weight_g * costs_.at(end))) {
         return std::nullopt;
       }
     }
@@ -107,7 +107,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     return best_cost_ == kInfinity || f < settings_.weight_g * best_cost_ - 2 * quantum_;
   }
   /// Minimum f on a side's open list.
-  double least(Side side) const { return open_[side].top().f * quantum_; }
+  double minimum(Side side) const { return open_[side].top().f * quantum_; }
 
   double evaluation_of(Side side, double g, const Cell& c, const Vec3& at) const {
     return settings_.weight_g * (g + costs_.at(at)) + settings_.weight_h * estimate(side)(c);
@@ -203,7 +203,7 @@ class TwoSidedSearch : kit::LatticeSearch {
     const Cell c = lattice_.cell(arrival.cell);
     const double at = costs_.at(lattice_.position(c));
     // Lower bound of the other side's cost to nodes that it has not expanded.
-    const double beyond = least(other(side)) - settings_.weight_h * estimate(other(side))(c) -
+    const double beyond = minimum(other(side)) - settings_.weight_h * estimate(other(side))(c) -
                           settings_.weight_g * at;
     return !is_better(settings_.weight_g * arrival.g + beyond);
   }

@@ -35,13 +35,13 @@ class Links {
   bool may_hold(std::uint32_t node) const { return node - first_ <= span_; }
   /// Cost of the node's link, kNever if it has none.
   std::uint32_t cost(std::uint32_t node) const {
-    std::uint32_t least = kNever;
+    std::uint32_t minimum = kNever;
     if (may_hold(node)) {
       for (const Link& link : all_) {
-        least = link.node == node ? std::min(least, link.cost) : least;
+        minimum = link.node == node ? std::min(minimum, link.cost) : minimum;
       }
     }
-    return least;
+    return minimum;
   }
 
  private:

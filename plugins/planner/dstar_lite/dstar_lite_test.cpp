@@ -59,12 +59,12 @@ TEST(DStarLite, TheHundredthPlanIsTheFirstAndThreadsAgree) {
 TEST(DStarLite, BudgetAndCancellation) {
   const auto planner = make_planner("dstar_lite");
   Request request = city_request("complex", 1);
-  for (const std::uint64_t most : {0, 7, 600}) {
-    request.budget.max_iterations = most;
+  for (const std::uint64_t maximum : {0, 7, 600}) {
+    request.budget.max_iterations = maximum;
     const PlanResult cut = planner->plan(request);
     EXPECT_EQ(cut.status, PlanStatus::timed_out);
     EXPECT_TRUE(cut.budget_hit);
-    EXPECT_EQ(expanded(cut), std::int64_t(most));
+    EXPECT_EQ(expanded(cut), std::int64_t(maximum));
   }
   request.budget = {};
   request.budget.max_memory_bytes = 9 * 640'000 + 10'000;

@@ -83,18 +83,18 @@ class Search {
   const Vertices& vertices() const { return vertices_; }
 
   /// procedure Main, one round: the cheapest path from the start to the goal. Put off, for a later
-  /// round or go_on(), after work as for lowering `most` vertices.
-  PlanStatus plan(BudgetWatch& watch, std::size_t max_list_bytes, std::uint64_t most) {
+  /// round or go_on(), after work as for lowering `max_expanded` vertices.
+  PlanStatus plan(BudgetWatch& watch, std::size_t max_list_bytes, std::uint64_t max_expanded) {
     watch_ = &watch;
     max_list_bytes_ = max_list_bytes;
     progress_ = {};
     raises_ = 0;
     nearest_ = kNever;
     forget_stale_entries();
-    return go_on(most);
+    return go_on(max_expanded);
   }
-  PlanStatus go_on(std::uint64_t most) {
-    most_ = most;
+  PlanStatus go_on(std::uint64_t max_expanded) {
+    max_expanded_ = max_expanded;
     ended_ = put_off_ = false;
     do {
       compute_shortest_path();
@@ -144,8 +144,8 @@ class Search {
     }
   }
 
-  /// Recomputes rhs, which is known not to be below `least`.
-  void update_rhs(std::uint32_t s, const Cell& c, std::uint32_t least, bool rising) {
+  /// Recomputes rhs, which is known not to be below `min_rhs`.
+  void update_rhs(std::uint32_t s, const Cell& c, std::uint32_t min_rhs, bool rising) {
     const Values old = vertices_[s];
     std::uint32_t rhs = graph_.goal_cost(s);
     graph_.successors(s, kit::kHere, [&](std::uint32_t n, std::uint32_t cost, const auto& is_free) {
@@ -153,7 +153,7 @@ class Search {
       if (g != kNever && g + cost < rhs && is_free()) {
         rhs = g + cost;
       }
-      return rhs > least;
+      return rhs > min_rhs;
     });
     if (rhs != old.rhs) {
       vertices_.set(s, {old.g, rhs});
@@ -317,7 +317,7 @@ class Search {
   }
 
   bool spent() {
-    put_off_ = progress_.expanded + kRaise * raises_ >= most_;
+    put_off_ = progress_.expanded + kRaise * raises_ >= max_expanded_;
     ended_ = ended_ || put_off_ || watch_->spent(progress_.expanded, open_.size()) || memory_full();
     return ended_;
   }
@@ -369,7 +369,7 @@ class Search {
   bool fresh_ = true;   ///< all legs are as they were initially
   bool ended_ = false;
   bool put_off_ = false;
-  std::uint64_t most_ = 0;
+  std::uint64_t max_expanded_ = 0;
   std::uint64_t raises_ = 0;
   bool too_long_ = false;
   BudgetWatch* watch_ = nullptr;

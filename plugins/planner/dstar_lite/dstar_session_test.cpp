@@ -207,10 +207,10 @@ TEST(DStarLiteSession, ABudgetThatEndsInARepairIsMadeUpForByTheNext) {
           flown.flip(c);
         }
       }
-      const std::uint64_t most = std::uint64_t(random.integer(0, 60));
-      flown.request().budget.max_iterations = most;
+      const std::uint64_t maximum = std::uint64_t(random.integer(0, 60));
+      flown.request().budget.max_iterations = maximum;
       const PlanResult& cut = flown.update();
-      ASSERT_LE(std::uint64_t(expanded(cut)), most);
+      ASSERT_LE(std::uint64_t(expanded(cut)), maximum);
       cut_short += cut.status == PlanStatus::timed_out && cut.budget_hit;
     }
     flown.request().budget = {};

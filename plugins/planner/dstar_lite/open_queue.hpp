@@ -43,13 +43,13 @@ class OpenQueue {
     buckets_.clear();
     below_.clear();
     next_.reset();
-    least_ = 0;
+    min_key_ = 0;
   }
   bool empty() const { return below_.empty() && !next_ && buckets_.empty(); }
   std::size_t size() const { return below_.size() + buckets_.size() + (next_ ? 1 : 0); }
   std::size_t bytes() const { return below_.bytes() + buckets_.bytes(); }
   void push(const Entry& entry) {
-    if (entry.key < least_) {
+    if (entry.key < min_key_) {
       below_.push(entry);
     } else {
       buckets_.push(entry.key, entry.node, entry.h);
@@ -62,7 +62,7 @@ class OpenQueue {
     }
     if (!next_) {
       const kit::BucketQueue::Entry entry = buckets_.pop();
-      least_ = entry.key;
+      min_key_ = entry.key;
       next_ = Entry{entry.key, entry.from, entry.node};
     }
     return *next_;
@@ -78,8 +78,8 @@ class OpenQueue {
 
  private:
   kit::BucketQueue buckets_;
-  Heap below_;                 ///< keys below least_
+  Heap below_;                 ///< keys below min_key_
   std::optional<Entry> next_;  ///< already taken from the buckets
-  std::uint32_t least_ = 0;    ///< the last key taken from the buckets
+  std::uint32_t min_key_ = 0;  ///< the last key taken from the buckets
 };
 }  // namespace altiplan::dstar_lite

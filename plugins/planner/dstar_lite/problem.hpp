@@ -101,11 +101,11 @@ class ToStart {
     others_.pop_back();
   }
   std::uint32_t operator()(const Cell& c) const {
-    std::uint32_t least = costs_.between(c, first_.cell) + first_.cost;
+    std::uint32_t minimum = costs_.between(c, first_.cell) + first_.cost;
     for (const End& end : others_) {
-      least = std::min(least, costs_.between(c, end.cell) + end.cost);
+      minimum = std::min(minimum, costs_.between(c, end.cell) + end.cost);
     }
-    return least;
+    return minimum;
   }
 
  private:

@@ -63,15 +63,15 @@ class HybridAstar final : public Planner {
 
   hybrid_astar::Settings settings_for(const Request& request) const {
     const Vec3 extent = request.volume.max - request.volume.min;
-    const double least = std::max(request.limits.min_turn_radius, 0.0);
+    const double minimum = std::max(request.limits.min_turn_radius, 0.0);
     const double open = std::max({extent.x(), extent.y(), 1.0}) / 200;
     hybrid_astar::Settings settings;
     settings.cell_m =
         params_.cell_m.value.value_or(params_.radius_m.value ? *params_.radius_m.value / 2
-                                      : least > 0            ? least / 2
+                                      : minimum > 0          ? minimum / 2
                                                              : open);
     settings.radius =
-        std::max(least, params_.radius_m.value.value_or(least > 0 ? least : settings.cell_m));
+        std::max(minimum, params_.radius_m.value.value_or(minimum > 0 ? minimum : settings.cell_m));
     const double slope = std::tan(std::min(request.limits.max_slope(), radians(45)));
     settings.cell_height =
         params_.cell_height_m.value.value_or(std::max(settings.cell_m * slope / 2, 1e-3));

@@ -194,7 +194,7 @@ class Search {
   }
 
   void add(const Node& node) {
-    const double h = steering_.least_length_to_goal(node.pose, columns_(node.pose.position));
+    const double h = steering_.min_length_to_goal(node.pose, columns_(node.pose.position));
     if (!(node.g + h < best_)) {
       return;
     }

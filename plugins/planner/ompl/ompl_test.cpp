@@ -67,9 +67,9 @@ TEST_P(Ompl, KeepsTheBudget) {
     request.budget.max_iterations = maximum;
     const PlanResult result = make_planner("ompl", with(GetParam(), 20'000))->plan(request);
     ASSERT_FALSE(result.counters.empty());
-    EXPECT_LE(std::uint64_t(result.counters[0].value), most);
+    EXPECT_LE(std::uint64_t(result.counters[0].value), maximum);
     EXPECT_TRUE(result.status != PlanStatus::solved || check(result.route, request).ok());
-    EXPECT_TRUE(most > 0 || result.status == PlanStatus::timed_out) << result.message;
+    EXPECT_TRUE(maximum > 0 || result.status == PlanStatus::timed_out) << result.message;
   }
 }
 

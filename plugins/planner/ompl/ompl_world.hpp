@@ -24,7 +24,7 @@ namespace ob = ompl::base;
 /// that is spent, nothing is free any more, so that OMPL's current activity ends soon.
 class Questions {
  public:
-  Questions(const Budget& budget, std::uint64_t maximum) : watch_(budget), max_(maximum) {}
+  Questions(const Budget& budget, std::uint64_t maximum) : watch_(budget), max_asked_(maximum) {}
 
   /// Counts a query; returns true if it is to be answered.
   bool take() {
@@ -36,7 +36,7 @@ class Questions {
   }
   bool spent() {
     budget_spent_ = budget_spent_ || watch_.spent(asked_);
-    return budget_spent_ || asked_ >= max_;
+    return budget_spent_ || asked_ >= max_asked_;
   }
   bool take_state() { return take() && ++states_ > 0; }
   bool take_leg() { return take() && ++legs_ > 0; }
@@ -51,7 +51,7 @@ class Questions {
 
  private:
   BudgetWatch watch_;
-  std::uint64_t max_;
+  std::uint64_t max_asked_;
   std::uint64_t asked_ = 0;
   std::int64_t states_ = 0;
   std::int64_t legs_ = 0;

@@ -102,7 +102,7 @@ class PoseGrowth {
     const double reach = tree_.parent(node) == kNone ? kInfinity : reach_;
     std::vector<std::pair<double, std::size_t>> shots;
     for (std::size_t g = 0; g < goals_.size(); ++g) {
-      if (paths_.steering().least_length(from, goals_[g]) <= reach) {
+      if (paths_.steering().min_length(from, goals_[g]) <= reach) {
         if (const double length = paths_.steering().length(from, goals_[g], reach);
             length <= reach) {
           shots.emplace_back(length, g);

@@ -82,7 +82,7 @@ class Tree {
   bool has_grown_to_goal(Node node) const { return marks_[std::size_t(node)].grown_to_goal; }
   void set_grown_to_goal(Node node) { marks_[std::size_t(node)].grown_to_goal = true; }
 
-  /// Counts a failed extension. A node that has `most` of them rests until none is left to grow.
+  /// Counts a failed extension. A node that has `maximum` of them rests until none is left to grow.
   void count_failure(Node node, int maximum) {
     if (++marks_[std::size_t(node)].failures < maximum) {
       return;

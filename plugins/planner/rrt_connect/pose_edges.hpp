@@ -52,7 +52,7 @@ class PoseEdges {
     double shortest = metres(side, best, q);
     for (const std::uint32_t number : near_) {
       const State at = state(side, Node(number));
-      if ((side == kStart ? steering().least_length(at, q) : steering().least_length(q, at)) <
+      if ((side == kStart ? steering().min_length(at, q) : steering().min_length(q, at)) <
           shortest) {
         if (const double its = metres(side, Node(number), q, shortest); its < shortest) {
           shortest = its;

@@ -37,7 +37,7 @@ struct Params : kit::SteeringParams {
         .doc(
             "longest edge by which a tree grows; auto: a tenth of the volume's diagonal, with "
             "turns "
-            "at minimum a circle");
+            "at least a circle");
     f("max_iterations", max_iterations).at_least(1).doc("maximum number of edges tried");
     SteeringParams::describe(f);
   }

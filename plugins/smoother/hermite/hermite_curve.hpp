@@ -53,8 +53,8 @@ class HermiteCurve {
   }
 
   /// Halves the bend of the leg at one of its ends: inserts a node, or moves it half way to the
-  /// corner. If it would get shorter than `least`, the corner is left sharp. False if nothing bends
-  /// it.
+  /// corner. If it would get shorter than `minimum`, the corner is left sharp. False if nothing
+  /// bends it.
   bool halve(std::size_t leg, std::size_t corner, double minimum) {
     if (!rounded(corner)) {
       return false;

@@ -52,7 +52,7 @@ class TurnShortening {
     }
     const auto from = pose(a);
     const auto to = pose(b);
-    if (!from || !to || replaced - least_length(*from, *to) <= min_gain_ * total()) {
+    if (!from || !to || replaced - min_length(*from, *to) <= min_gain_ * total()) {
       return false;
     }
     const auto path = steering_.path(*from, *to);
@@ -106,8 +106,8 @@ class TurnShortening {
     }
     return sum;
   }
-  double least_length(const Pose& from, const Pose& to) const {
-    const double length = steering_.least_length(from, to);
+  double min_length(const Pose& from, const Pose& to) const {
+    const double length = steering_.min_length(from, to);
     return steering_.is_calm() ? std::hypot(length, to.position.z() - from.position.z()) : length;
   }
 

@@ -11,7 +11,7 @@ void Pheromone::reset(std::size_t places, double evaporation, double alpha) {
   per_unit_ = 1;
   largest_ = 1;
   all_changed_ = false;
-  least_ = std::pow(10, -std::min(140 / std::max(alpha, 1e-9), 100.0));
+  min_amount_ = std::pow(10, -std::min(140 / std::max(alpha, 1e-9), 100.0));
 }
 
 void Pheromone::evaporate() {
@@ -30,7 +30,7 @@ void Pheromone::evaporate() {
 }
 
 bool Pheromone::settle() {
-  if (!all_changed_ && largest_ * least_ < 1) {
+  if (!all_changed_ && largest_ * min_amount_ < 1) {
     return false;
   }
   all_changed_ = false;
@@ -42,7 +42,7 @@ bool Pheromone::settle() {
     per_unit_ = std::min(per_unit_ * factor, 1e50);
   }
   for (double& amount : amounts_) {
-    amount = std::max(amount * factor, least_);
+    amount = std::max(amount * factor, min_amount_);
   }
   return true;
 }

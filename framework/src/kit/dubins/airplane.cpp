@@ -228,20 +228,20 @@ class LengthSearch {
 };
 }  // namespace
 
-double AirplaneLimits::least_length(double height_change) const {
+double AirplaneLimits::min_length(double height_change) const {
   if (height_change == 0) {
     return 0;
   }
   return std::abs(height_change) / std::tan(height_change > 0 ? climb : sink);
 }
 
-AirplanePath path_of_length(const PosePair& pair, double radius, double least_length) {
-  return LengthSearch(pair, radius, least_length).run();
+AirplanePath path_of_length(const PosePair& pair, double radius, double min_length) {
+  return LengthSearch(pair, radius, min_length).run();
 }
 
 std::optional<AirplanePath> airplane_path(const Pose& from, const Pose& to,
                                           const AirplaneLimits& limits) {
-  const double minimum = limits.least_length(to.position.z() - from.position.z());
+  const double minimum = limits.min_length(to.position.z() - from.position.z());
   if (minimum == kInfinity) {
     return std::nullopt;
   }
@@ -250,7 +250,7 @@ std::optional<AirplanePath> airplane_path(const Pose& from, const Pose& to,
 
 double airplane_length(const Pose& from, const Pose& to, const AirplaneLimits& limits,
                        double at_most) {
-  const double minimum = limits.least_length(to.position.z() - from.position.z());
+  const double minimum = limits.min_length(to.position.z() - from.position.z());
   if (minimum > at_most) {
     return kInfinity;
   }

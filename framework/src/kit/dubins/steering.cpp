@@ -115,22 +115,22 @@ double Steering::length(const Pose& from, const Pose& to, double at_most) const 
   return path ? path->through_air.length() : kInfinity;
 }
 
-double Steering::least_length(const Pose& from, const Pose& to) const {
+double Steering::min_length(const Pose& from, const Pose& to) const {
   const Vec3 apart = to.position - from.position;
   const double straight = is_calm() ? apart.head<2>().norm()
                           : is_too_windy()
                               ? 0
                               : straight_through_air(apart, wind_between(from, to) / speed_);
   const double turn = std::abs(std::remainder(to.heading - from.heading, 2 * kPi));
-  return std::max({straight, limits_.radius * turn, limits_.least_length(apart.z())});
+  return std::max({straight, limits_.radius * turn, limits_.min_length(apart.z())});
 }
 
-double Steering::least_length_to_goal(const Pose& from, double over_ground) const {
+double Steering::min_length_to_goal(const Pose& from, double over_ground) const {
   if (goal_.tolerance_m > 0) {
     return std::max(0.0, over_ground - goal_.tolerance_m);
   }
   const double rise = goal_.position.z() - from.position.z();
-  const double length = std::max(over_ground, limits_.least_length(rise));
+  const double length = std::max(over_ground, limits_.min_length(rise));
   return is_calm() && goal_.heading
              ? std::max(length, airplane_length(from, {goal_.position, *goal_.heading}, limits_))
              : length;

@@ -245,7 +245,7 @@ std::optional<WindPath> wind_path(const Pose& from, const Pose& to, double radiu
 
 std::optional<WindPath> wind_path(const Pose& from, const Pose& to, const AirplaneLimits& limits,
                                   const Air& air, double at_most) {
-  const double minimum = limits.least_length(to.position.z() - from.position.z());
+  const double minimum = limits.min_length(to.position.z() - from.position.z());
   if (minimum == kInfinity || minimum > at_most) {
     return std::nullopt;
   }

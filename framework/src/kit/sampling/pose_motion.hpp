@@ -58,7 +58,7 @@ class PoseMotion {
   }
 
   double minimum(const State& from, const State& to) const {
-    return cost_of(steering().least_length(from, to), from, to);
+    return cost_of(steering().min_length(from, to), from, to);
   }
   double minimum(Node from, const State& to) const { return minimum(state(from), to); }
   /// Infinite if it is more than `at_most`.

@@ -12,7 +12,7 @@ constexpr double kWithin = 1 - 1e-9;  ///< keeps a bent leg off its limit
 
 double horizontal(const Vec3& v) { return std::hypot(v.x(), v.y()); }
 
-/// Rotated about the vertical until its angle with `incoming` is at most `most`.
+/// Rotated about the vertical until its angle with `incoming` is at most `maximum`.
 Vec3 turned_level(const Vec3& incoming, const Vec3& way, double maximum) {
   const double run = horizontal(way);
   if (turn_angle_horizontal(incoming, way) <= maximum) {
@@ -24,7 +24,7 @@ Vec3 turned_level(const Vec3& incoming, const Vec3& way, double maximum) {
   return {run * std::cos(heading), run * std::sin(heading), way.z()};
 }
 
-/// Rotated in the plane of both until its angle with `incoming` is at most `most`.
+/// Rotated in the plane of both until its angle with `incoming` is at most `maximum`.
 Vec3 turned_in_space(const Vec3& incoming, const Vec3& way, double maximum) {
   if (turn_angle_in_space(incoming, way) <= maximum) {
     return way;

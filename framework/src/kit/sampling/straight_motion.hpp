@@ -21,7 +21,7 @@ class StraightMotion {
  public:
   using State = Vec3;
   using Node = LegTree::Node;
-  static constexpr bool kExact = true;  ///< `least` is the length of an edge
+  static constexpr bool kExact = true;  ///< `minimum` is the length of an edge
   static constexpr std::size_t kBytesPerNode = 160;
 
   StraightMotion(const Request& request, const StarSettings& settings, StarMemory& memory)

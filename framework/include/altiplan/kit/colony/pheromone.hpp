@@ -58,7 +58,7 @@ class ALTIPLAN_API Pheromone {
   double remains_ = 1;
   double per_unit_ = 1;
   double largest_ = 1;
-  double least_ = 0;
+  double min_amount_ = 0;
   bool all_changed_ = false;  ///< since the last settle
 };
 

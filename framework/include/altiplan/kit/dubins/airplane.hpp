@@ -28,7 +28,7 @@ struct ALTIPLAN_API AirplaneLimits {
 
   /// Least horizontal length of a path that changes the height by that much; infinite if the limit
   /// is 0.
-  double least_length(double height_change) const;
+  double min_length(double height_change) const;
 };
 
 struct ALTIPLAN_API AirplanePath {
@@ -51,5 +51,5 @@ ALTIPLAN_API double airplane_length(const Pose& from, const Pose& to, const Airp
                                     double at_most = kInfinity);
 
 /// The shortest path of the above kinds that is at least that long, horizontally.
-ALTIPLAN_API AirplanePath path_of_length(const PosePair& pair, double radius, double least_length);
+ALTIPLAN_API AirplanePath path_of_length(const PosePair& pair, double radius, double min_length);
 }  // namespace altiplan::kit

@@ -39,10 +39,10 @@ class ALTIPLAN_API Steering {
   /// Its length; infinite if there is none, or if it is more than `at_most`, which takes less time.
   double length(const Pose& from, const Pose& to, double at_most = kInfinity) const;
   /// A lower bound of that, which takes far less.
-  double least_length(const Pose& from, const Pose& to) const;
+  double min_length(const Pose& from, const Pose& to) const;
   /// A lower bound on the length to the goal, of which the ground covered takes at least
   /// `over_ground`.
-  double least_length_to_goal(const Pose& from, double over_ground) const;
+  double min_length_to_goal(const Pose& from, double over_ground) const;
 
   /// The pose on a path from a pose after a length through the air, at most that of the path.
   static Pose pose_at(const Pose& from, const PosePath& path, double length);

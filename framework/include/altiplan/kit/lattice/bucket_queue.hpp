@@ -35,7 +35,7 @@ class BucketQueue {
     chunks_.clear();
     has_top_ = false;
     free_ = kNone;
-    least_ = 0;
+    min_key_ = 0;
     size_ = 0;
   }
   bool empty() const { return size_ == 0; }
@@ -46,14 +46,14 @@ class BucketQueue {
   /// A key below the last one popped counts as that one.
   void push(std::uint32_t key, std::uint32_t node, std::uint32_t from) {
     ++size_;
-    if (key > least_) {
+    if (key > min_key_) {
       put({key, node, from});
       return;
     }
     if (has_top_) {
       put(top_);
     }
-    top_ = {least_, node, from};
+    top_ = {min_key_, node, from};
     has_top_ = true;
   }
 
@@ -64,7 +64,7 @@ class BucketQueue {
       has_top_ = false;
       return top_;
     }
-    std::size_t bucket = least_ % kWidth;
+    std::size_t bucket = min_key_ % kWidth;
     if (heads_[bucket] == kNone) {
       bucket = next_bucket();
     }
@@ -107,7 +107,7 @@ class BucketQueue {
 
   /// Bytes above the returned bucket's are those of the least key.
   std::size_t bucket_of(std::uint32_t key) const {
-    const std::uint32_t differs = key ^ least_;
+    const std::uint32_t differs = key ^ min_key_;
     if (differs < 1U << 8) {
       return key % kWidth;
     }
@@ -169,26 +169,26 @@ class BucketQueue {
     return 64 * word + std::size_t(std::countr_zero(filled_[word]));
   }
 
-  /// The bucket whose newest entry has the least key in the queue, which becomes least_.
+  /// The bucket whose newest entry has the least key in the queue, which becomes min_key_.
   std::size_t next_bucket() {
     const std::size_t bucket = first_filled();
     if (bucket < kWidth) {
-      least_ = std::uint32_t(least_ / kWidth * kWidth + bucket);
+      min_key_ = std::uint32_t(min_key_ / kWidth * kWidth + bucket);
       return bucket;
     }
     std::uint32_t newest = heads_[bucket];
     if (chunks_[newest].count == 1 && chunks_[newest].below == kNone) {
-      least_ = chunks_[newest].entry(0).key;
+      min_key_ = chunks_[newest].entry(0).key;
       return bucket;  // alone in its bucket: used in place
     }
     heads_[bucket] = kNone;
     mark(bucket, false);
     // Oldest first, so that the newest entry stays on top.
     std::uint32_t chunk = kNone;
-    least_ = kNone;
+    min_key_ = kNone;
     while (newest != kNone) {
       for (std::uint32_t n = 0; n < chunks_[newest].count; ++n) {
-        least_ = std::min(least_, chunks_[newest].entry(n).key);
+        min_key_ = std::min(min_key_, chunks_[newest].entry(n).key);
       }
       const std::uint32_t older = chunks_[newest].below;
       chunks_[newest].below = chunk;
@@ -203,14 +203,14 @@ class BucketQueue {
       give_back(chunk);
       chunk = newer;
     }
-    return least_ % kWidth;
+    return min_key_ % kWidth;
   }
 
   std::vector<Chunk> chunks_;
   std::array<std::uint32_t, kLevels* kWidth> heads_ = none();
   std::array<std::uint64_t, kLevels * kWidth / 64> filled_{};  // one bit per bucket
   std::uint32_t free_ = kNone;
-  std::uint32_t least_ = 0;
+  std::uint32_t min_key_ = 0;
   std::size_t size_ = 0;
   Entry top_{};  // the last one pushed with the least key waits outside the buckets
   bool has_top_ = false;

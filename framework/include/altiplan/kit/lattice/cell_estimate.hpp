@@ -52,11 +52,11 @@ class CellEstimate {
  private:
   [[gnu::noinline]] std::uint32_t other(const Cell& c) const {
     if (heuristic_ == Heuristic::octile && !links_.empty()) {
-      std::uint32_t least = ~std::uint32_t{0};
+      std::uint32_t minimum = ~std::uint32_t{0};
       for (const Link& link : links_) {
-        least = std::min(least, costs_.between(c, link.cell) + link.cost);
+        minimum = std::min(minimum, costs_.between(c, link.cell) + link.cost);
       }
-      return least;
+      return minimum;
     }
     const Vec3 way = lattice_.position(c) - goal_.position;
     switch (heuristic_) {

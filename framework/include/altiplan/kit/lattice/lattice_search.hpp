@@ -102,11 +102,11 @@ class Estimate {
         if (ends_.empty()) {  // only the goal's tolerance is on the lattice
           return std::max(0.0, (lattice_.position(c) - end_).norm() - tolerance_m_);
         }
-        double least = kInfinity;
+        double minimum = kInfinity;
         for (const Lattice::Link& end : ends_) {
-          least = std::min(least, lattice_.distance(c, end.cell) + end.length);
+          minimum = std::min(minimum, lattice_.distance(c, end.cell) + end.length);
         }
-        return least;
+        return minimum;
       }
       case Heuristic::euclidean:
         return (lattice_.position(c) - end_).norm();

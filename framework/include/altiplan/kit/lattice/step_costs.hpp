@@ -55,10 +55,10 @@ class ALTIPLAN_API StepCosts {
       const std::array<std::uint32_t, 3>& marginal = marginal_[order_of({x, y, z})];
       return x * marginal[0] + y * marginal[1] + z * marginal[2];
     }
-    const std::uint32_t most = std::max({x, y, z});
-    const std::uint32_t least = std::min({x, y, z});
-    return most * along_[1] + (x + y + z - most - least) * (along_[3] - along_[1]) +
-           least * (along_[7] - along_[3]);
+    const std::uint32_t maximum = std::max({x, y, z});
+    const std::uint32_t minimum = std::min({x, y, z});
+    return maximum * along_[1] + (x + y + z - maximum - minimum) * (along_[3] - along_[1]) +
+           minimum * (along_[7] - along_[3]);
   }
   std::uint32_t between(const Cell& a, const Cell& b) const {
     return apart(std::uint32_t(std::abs(a[0] - b[0])), std::uint32_t(std::abs(a[1] - b[1])),

@@ -31,7 +31,7 @@ void block_below(VoxelGrid& grid, const Top& column_top) {
   std::vector<int> blocked_levels(std::size_t(spec.counts[0]));
   for (int j = 0; j < spec.counts[1]; ++j) {
     grid.ask_watch();
-    int most = 0;
+    int maximum = 0;
     for (int i = 0; i < spec.counts[0]; ++i) {
       const double top = column_top(i, j) + spec.inflation;
       const double levels = (top - spec.origin.z()) / spec.cell.z();
@@ -39,9 +39,9 @@ void block_below(VoxelGrid& grid, const Top& column_top) {
       // top.
       const double count = centre ? std::floor(levels - 0.5) + 1 : std::ceil(levels);
       blocked_levels[std::size_t(i)] = int(std::clamp(count, 0.0, double(spec.counts[2])));
-      most = std::max(most, blocked_levels[std::size_t(i)]);
+      maximum = std::max(maximum, blocked_levels[std::size_t(i)]);
     }
-    for (int k = 0; k < most; ++k) {
+    for (int k = 0; k < maximum; ++k) {
       for (int i = 0; i < spec.counts[0]; ++i) {
         const int first = i;
         while (i < spec.counts[0] && blocked_levels[std::size_t(i)] > k) {
@@ -114,30 +114,30 @@ bool too_near_ground(const Vec3& a, const Vec3& b, double r, const GroundBounds&
     return meets(a, b, keep);
   }
   const Vec3 middle = (a + b) / 2;
-  const GroundBounds least{ground.top, std::min(ground.enough, need)};
-  return too_near_ground(a, middle, r, least, shortest, gap, slope, meets) ||
-         too_near_ground(middle, b, r, least, shortest, gap, slope, meets);
+  const GroundBounds minimum{ground.top, std::min(ground.enough, need)};
+  return too_near_ground(a, middle, r, minimum, shortest, gap, slope, meets) ||
+         too_near_ground(middle, b, r, minimum, shortest, gap, slope, meets);
 }
 
-/// Minimum distance between the ground and a leg above it, if below `least`, with the callbacks of
-/// too_near_ground; nearest(a, b, least): the same for a part no longer than `shortest`.
+/// Minimum distance between the ground and a leg above it, if below `minimum`, with the callbacks
+/// of too_near_ground; nearest(a, b, minimum): the same for a part no longer than `shortest`.
 template <class Gap, class Slope, class Nearest>
-double ground_distance(const Vec3& a, const Vec3& b, double least, double top, double shortest,
+double ground_distance(const Vec3& a, const Vec3& b, double minimum, double top, double shortest,
                        const Gap& gap, const Slope& slope, const Nearest& nearest) {
-  if (std::min(a.z(), b.z()) - top >= least) {
-    return least;
+  if (std::min(a.z(), b.z()) - top >= minimum) {
+    return minimum;
   }
   const double height = std::max(gap(a, b), 0.0);
-  least = std::min(least, height);  // the ground vertically below
-  if (height >= height_for(least, slope(a, b, least))) {
-    return least;
+  minimum = std::min(minimum, height);  // the ground vertically below
+  if (height >= height_for(minimum, slope(a, b, minimum))) {
+    return minimum;
   }
-  if (std::hypot(b.x() - a.x(), b.y() - a.y()) <= std::max(least, shortest)) {
-    return nearest(a, b, least);
+  if (std::hypot(b.x() - a.x(), b.y() - a.y()) <= std::max(minimum, shortest)) {
+    return nearest(a, b, minimum);
   }
   const Vec3 middle = (a + b) / 2;
-  least = ground_distance(a, middle, least, top, shortest, gap, slope, nearest);
-  return ground_distance(middle, b, least, top, shortest, gap, slope, nearest);
+  minimum = ground_distance(a, middle, minimum, top, shortest, gap, slope, nearest);
+  return ground_distance(middle, b, minimum, top, shortest, gap, slope, nearest);
 }
 
 /// A ground point within `over` (horizontally) whose distance from p is minimal to within 5 %, and

@@ -1,10 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
-#include "host/judge/judge.hpp"
 #include "host/run/pipeline_run.hpp"
 
+#include <algorithm>
+
 namespace altiplan::host {
+
+void Run::attempt(const StepEntry& step) {
+  std::optional<std::size_t> leaves;
+  if (step.verb == Verb::smooth) {
+    leaves = input_of(step);
+  }
+  bool accepted = one_attempt(step, std::nullopt);
+  for (auto other = step.otherwise.begin();
+       other != step.otherwise.end() && !accepted && !interrupted(); ++other) {
+    accepted = one_attempt(*other, step.id);
+  }
+  if (accepted) {
+    leaves = result_.accepted;
+    left_by_[result_.steps.back().id] = *leaves;
+  }
+  if (leaves) {
+    left_by_[step.id] = *leaves;
+  }
+}
+
+bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead_of) {
+  StepResult step = begin_attempt(entry, std::move(instead_of));
+  if (entry.verb == Verb::plan) {
+    plan(entry, step);
+  } else {
+    smooth(entry, step);
+  }
+  if (step.status == RunStatus::cancelled &&
+      !interrupted()) {  // stopped by the watchdog, not by the user
+    step.status = RunStatus::timed_out;
+    step.reason = watchdog_.out_of_memory() ? Reason::memory : Reason::deadline;
+    step.budget_hit = true;
+  }
+  if (step.status == RunStatus::timed_out && step.reason == Reason::deadline) {
+    step.message = "time budget exhausted: " + time_budget(entry) + " (" + step.message + ")";
+  }
+  const std::lock_guard lock(mutex_);
+  result_.steps.back() = step;
+  if (step.accepted) {
+    result_.accepted = result_.steps.size() - 1;
+  }
+  return step.accepted;
+}
+
+StepResult Run::begin_attempt(const StepEntry& entry, std::optional<std::string> instead_of) {
+  StepResult step;
+  step.id = entry.id;
+  step.verb = entry.verb;
+  step.plugin = entry.plugin;
+  step.instead_of = std::move(instead_of);
+  {
+    const std::lock_guard lock(mutex_);
+    result_.steps.push_back(step);
+  }
+  if (trace_) {
+    trace_->begin_step(entry.id);
+  }
+  if (options_.progress != nullptr) {
+    options_.progress->begin_step();
+  }
+  return step;
+}
+
+std::size_t Run::input_of(const StepEntry& entry) const {
+  const auto named = entry.from ? left_by_.find(*entry.from) : left_by_.end();
+  return named != left_by_.end() ? named->second : *result_.accepted;
+}
 
 const Run::PlanPlugin& Run::make_plan(const StepEntry& entry) {
   auto made = std::make_unique<PlanPlugin>();
@@ -82,67 +148,5 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
     whole.message = std::move(told);
   }
   return whole;
-}
-
-void Run::judge_step(StepResult& step, const Request& request) {
-  if (step.route.empty() || !std::all_of(step.route.begin(), step.route.end(), is_finite)) {
-    return;
-  }
-  std::string asked;
-  for (const Layer& layer : request.world->layers()) {
-    asked += (asked.empty() ? "" : ", ") + layer.id;
-  }
-  for (const NamedConstraint& constraint : request.constraints) {
-    asked += (asked.empty() ? "" : ", ") + constraint.name;
-  }
-  enter("judging the route of '" + step.id + "' by layers and constraints (" + asked + ")");
-  try {
-    if (step.status == RunStatus::solved) {  // first: the judge knows the cause
-      step.check = judge(step.route, request, mission_.via);
-    }
-    step.measures = measure(step.route, request);
-    if (step.check) {
-      take_verdict(step);
-    }
-  } catch (const std::exception& error) {
-    step.status = RunStatus::failed;
-    step.reason = reason_of(error);
-    step.message = std::string("judging the route, a layer or constraint threw: ") + error.what();
-  } catch (...) {
-    step.status = RunStatus::failed;
-    step.reason = Reason::threw;
-    step.message = "judging the route, a layer or constraint threw";
-  }
-  if (const std::string changed = leave(); !changed.empty()) {
-    step.accepted = false;
-    step.status = RunStatus::failed;
-    step.reason = Reason::process_changed;
-    step.message = "judging the route, a layer or constraint " + changed;
-  }
-}
-
-void Run::take_verdict(StepResult& step) {
-  const std::vector<Violation>& found = step.check->violations;
-  step.accepted = found.empty();
-  if (step.accepted) {
-    return;
-  }
-  const Violation* worst = violated_layer(*step.check);
-  step.status = worst != nullptr ? RunStatus::failed : RunStatus::rejected;
-  step.reason = worst != nullptr ? Reason::contract : Reason::constraint;
-  if (worst == nullptr) {
-    worst = &found.front();
-  }
-  step.message = verdict_sentence(*step.check, *worst);
-}
-
-ConfigError Run::at_its_key(const StepEntry& entry, const ParameterError& error) {
-  Location where = entry.where;
-  for (const Value::Entry& parameter : entry.with.entries) {
-    if (parameter.key == error.key()) {
-      where = parameter.where;
-    }
-  }
-  return ConfigError(where, entry.path + ".with." + error.key(), error.what());
 }
 }  // namespace altiplan::host
