@@ -18,7 +18,7 @@ std::string compressed(std::string_view bytes, int level) {
   return out;
 }
 
-std::optional<std::string> decompressed(std::string_view bytes, std::size_t most) {
+std::optional<std::string> decompressed(std::string_view bytes, std::size_t max_bytes) {
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) {
     throw Error("out of memory while decompressing");
@@ -28,14 +28,14 @@ std::optional<std::string> decompressed(std::string_view bytes, std::size_t most
   std::string out;
   std::string part(1 << 16, '\0');
   int code = Z_OK;
-  while (code == Z_OK && out.size() <= most) {
+  while (code == Z_OK && out.size() <= max_bytes) {
     stream.next_out = reinterpret_cast<Bytef*>(part.data());
     stream.avail_out = uInt(part.size());
     code = inflate(&stream, Z_NO_FLUSH);
     out.append(part, 0, part.size() - stream.avail_out);
   }
   inflateEnd(&stream);
-  if (out.size() > most) {
+  if (out.size() > max_bytes) {
     return std::nullopt;
   }
   if (code != Z_STREAM_END) {

@@ -10,6 +10,6 @@ namespace altiplan::host {
 
 /// Compresses to zlib's format (RFC 1950); level 1 is the fastest, 9 the smallest.
 std::string compressed(std::string_view bytes, int level);
-/// Empty if the result would exceed `most` bytes. Throws Error if the data is damaged.
-std::optional<std::string> decompressed(std::string_view bytes, std::size_t most);
+/// Empty if the result would exceed `max_bytes`. Throws Error if the data is damaged.
+std::optional<std::string> decompressed(std::string_view bytes, std::size_t max_bytes);
 }  // namespace altiplan::host

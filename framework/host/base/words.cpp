@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdio>
 
 namespace altiplan::host {
 
@@ -22,6 +21,24 @@ std::string with_digits(double number, int digits) {
   return {text.data(), end.ptr};
 }
 
+std::string with_decimals(double number, int decimals) {
+  std::array<char, 400> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number,
+                                 std::chars_format::fixed, decimals);
+  return {text.data(), end.ptr};
+}
+
+std::string rounded_text(double number, int decimals) {
+  std::string result = with_decimals(number, decimals);
+  if (result.find('.') != std::string::npos) {
+    result.erase(result.find_last_not_of('0') + 1);
+    if (result.back() == '.') {
+      result.pop_back();
+    }
+  }
+  return result == "-0" ? "0" : result;
+}
+
 std::string with_commas(std::string digits) {
   const std::size_t end = std::min(digits.find('.'), digits.size());
   const std::size_t first = digits[0] == '-' ? 1 : 0;
@@ -37,9 +54,8 @@ std::string counted(std::size_t count, std::string_view what) {
 }
 
 std::string place(const Vec3& p) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), "(%.0f, %.0f, %.0f)", p.x(), p.y(), p.z());
-  return text.data();
+  return "(" + with_decimals(p.x(), 0) + ", " + with_decimals(p.y(), 0) + ", " +
+         with_decimals(p.z(), 0) + ")";
 }
 
 std::string sentence(const std::string& text) { return text + (text.ends_with('?') ? "" : "."); }

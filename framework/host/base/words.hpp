@@ -16,6 +16,12 @@ bool is_snake_case(std::string_view name);
 /// Formats a number with `digits` significant digits.
 std::string with_digits(double number, int digits);
 
+/// Formats a number with `decimals` decimals: "-0.50".
+std::string with_decimals(double number, int decimals);
+
+/// Formats a number with at most `decimals` decimals, without trailing zeros: "0.5".
+std::string rounded_text(double number, int decimals);
+
 /// With a comma between groups of three digits: "-12,345.6".
 std::string with_commas(std::string digits);
 

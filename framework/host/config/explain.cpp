@@ -33,11 +33,11 @@ void add_entry(std::vector<Explained>& all, const Entry& entry, const Value& tre
         field.value_json = entry.id.empty() ? "null" : "\"" + entry.id + "\"";
       }
     }
-    bool said = field.where || field.value_json != "null";
+    bool is_set = field.where || field.value_json != "null";
     if constexpr (std::is_same_v<Entry, EventEntry>) {
-      said = said && (entry.add || field.spec.name != "known");
+      is_set = is_set && (entry.add || field.spec.name != "known");
     }
-    if (said) {
+    if (is_set) {
       add_fields(all, {{field}, {}}, path);
     }
   }

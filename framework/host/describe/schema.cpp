@@ -95,11 +95,11 @@ class Writer {
     }
     return schema;
   }
-  static Json numbers(std::size_t least, std::size_t most, const FieldSpec& field) {
+  static Json numbers(std::size_t min_items, std::size_t max_items, const FieldSpec& field) {
     return {{"type", "array"},
             {"items", number("number", field)},
-            {"minItems", least},
-            {"maxItems", most}};
+            {"minItems", min_items},
+            {"maxItems", max_items}};
   }
 
   Json value(const FieldSpec& shape, const FieldSpec& field) {

@@ -38,8 +38,8 @@ void make_quick(Config& config, bool flies) {
   }
   for (StepEntry& step : config.steps) {
     if (step.verb == Verb::plan) {
-      const double most = is_anytime(config, step.plugin) ? kQuickSeconds : kLongestSeconds;
-      step.within_s = std::min(step.within_s.value_or(kDefaultStepSeconds), most);
+      const double max_seconds = is_anytime(config, step.plugin) ? kQuickSeconds : kLongestSeconds;
+      step.within_s = std::min(step.within_s.value_or(kDefaultStepSeconds), max_seconds);
     }
   }
 }

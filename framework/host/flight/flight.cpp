@@ -139,16 +139,12 @@ double Flight::max_time() const {
 }
 
 std::string Flight::time_out() const {
-  char text[48];
-  std::snprintf(text, sizeof text, "timed out after %g s", max_time());
-  return std::string(text) +
+  return "timed out after " + with_digits(max_time(), 6) + " s" +
          (setup_.max_time_s ? " (max_time_s)" : " (ten times the route's duration)");
 }
 
 std::string Flight::away() const {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f m", distance_from(request_.goal, state_.position));
-  return text;
+  return with_decimals(distance_from(request_.goal, state_.position), 1) + " m";
 }
 
 void Flight::end_flight(RunStatus status, Reason reason, std::string message) {

@@ -49,15 +49,15 @@ class FlightPath {
   /// The position between s0 and s1 at which the path is nearest to p.
   double nearest(const Vec3& p, double s0, double s1) const {
     double best = s0;
-    double least = kInfinity;
+    double min_distance = kInfinity;
     double s = s0;
     for_each_leg(s0, s1, [&](const Vec3& a, const Vec3& b) {
       const Vec3 way = b - a;
       const double run = way.norm();
       const double share = run > 0 ? std::clamp((p - a).dot(way) / (run * run), 0.0, 1.0) : 0;
       const double distance = (a + share * way - p).norm();
-      if (distance < least) {
-        least = distance;
+      if (distance < min_distance) {
+        min_distance = distance;
         best = s + share * run;
       }
       s += run;
@@ -68,7 +68,7 @@ class FlightPath {
   /// The same in plan view.
   double nearest_level(Vec3 p, double s0, double s1) const {
     double best = s0;
-    double least = kInfinity;
+    double min_distance = kInfinity;
     double s = s0;
     for_each_leg(s0, s1, [&](const Vec3& a, const Vec3& b) {
       const Vec3 way = b - a;
@@ -76,8 +76,8 @@ class FlightPath {
       const double share =
           run > 0 ? std::clamp((p - a).head<2>().dot(way.head<2>()) / run, 0.0, 1.0) : 0;
       const double distance = (a + share * way - p).head<2>().norm();
-      if (distance < least) {
-        least = distance;
+      if (distance < min_distance) {
+        min_distance = distance;
         best = s + share * way.norm();
       }
       s += way.norm();

@@ -48,27 +48,27 @@ void Flight::replan_when_due() {
 
 Route Flight::replan(const Request& request) {
   const auto began = std::chrono::steady_clock::now();
-  Replan told;
-  told.at_s = state_.time_s;
-  told.step = setup_.replan_step;
+  Replan report;
+  report.at_s = state_.time_s;
+  report.step = setup_.replan_step;
   Route route;
   try {
     PlanResult plan = setup_.replanner->update(state_, request.goal, request.world, replan_changes_,
                                                request.budget);
-    told.status = run_status(plan.status);
-    told.reason = plan.reason;
-    told.message = std::move(plan.message);
-    told.counters = std::move(plan.counters);
+    report.status = run_status(plan.status);
+    report.reason = plan.reason;
+    report.message = std::move(plan.message);
+    report.counters = std::move(plan.counters);
     if (plan.status == PlanStatus::solved) {
       route = std::move(plan.route);
     }
   } catch (const PluginError& error) {  // the flight continues without a new route
-    told.reason = error.reason();
-    told.message = error.what();
+    report.reason = error.reason();
+    report.message = error.what();
   }
-  told.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  report.time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   replan_changes_.clear();
-  result_.replans.push_back(std::move(told));
+  result_.replans.push_back(std::move(report));
   return route;
 }
 

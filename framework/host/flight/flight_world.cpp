@@ -275,17 +275,17 @@ const std::string* FlightWorld::contact(const std::optional<Approach>& before, c
   return nullptr;
 }
 
-double FlightWorld::separation_below(double least, const Vec3& a, double t0, const Vec3& b,
+double FlightWorld::separation_below(double min_distance, const Vec3& a, double t0, const Vec3& b,
                                      double t1) const {
   for (const Layer& layer : truth_.layers()) {
-    if (const auto nearest = nearest_leg(*layer.environment, {a, b}, least)) {
-      least = nearest->distance;
+    if (const auto nearest = nearest_leg(*layer.environment, {a, b}, min_distance)) {
+      min_distance = nearest->distance;
     }
   }
   for (const MovingObstacle& obstacle : truth_.moving()) {
-    least = std::min(least, signed_separation(obstacle, a, t0, b, t1));
+    min_distance = std::min(min_distance, signed_separation(obstacle, a, t0, b, t1));
   }
-  return least;
+  return min_distance;
 }
 
 void FlightWorld::flown(const Vec3& a, double t0, const Vec3& b, double t1) {

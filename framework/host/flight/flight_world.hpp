@@ -38,9 +38,10 @@ class FlightWorld {
   /// obstacles by the sphere around its body. `request` is that of the true world.
   const std::string* contact(const std::optional<Approach>& before, const Vec3& a, double t0,
                              const Vec3& b, double t1, const Request& request) const;
-  /// Minimum distance between the leg and anything in the true world, if below `least`; signed as
-  /// in leg_clearance: minus the depth inside an obstacle.
-  double separation_below(double least, const Vec3& a, double t0, const Vec3& b, double t1) const;
+  /// Minimum distance between the leg and anything in the true world, if below `min_distance`;
+  /// signed as in leg_clearance: minus the depth inside an obstacle.
+  double separation_below(double min_distance, const Vec3& a, double t0, const Vec3& b,
+                          double t1) const;
   /// Records a flown leg, which begins at the end of the previous one.
   void flown(const Vec3& a, double t0, const Vec3& b, double t1);
   /// Separation over the whole track, in the true world of that time; infinite if nothing was near.

@@ -2,8 +2,8 @@
 #include "host/flight/flight_run.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "host/base/words.hpp"
 #include "host/flight/track_judge.hpp"
 
 namespace altiplan::host {
@@ -44,10 +44,9 @@ void Flight::take(FlownTo flown) {
     end_flight(RunStatus::not_reached, Reason::route_ended,
                "the route ended " + away() + " from the goal");
   } else if (passes_goal_ && !at_goal(state_.position, request_)) {
-    char limit[32];
-    std::snprintf(limit, sizeof limit, "%.1f m", arrival_distance(request_));
     end_flight(RunStatus::not_reached, Reason::route_ended,
-               "passed the goal at a distance of " + away() + ", above " + limit);
+               "passed the goal at a distance of " + away() + ", above " +
+                   with_decimals(arrival_distance(request_), 1) + " m");
   }
 }
 }  // namespace altiplan::host

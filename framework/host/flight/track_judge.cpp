@@ -171,7 +171,7 @@ Polyline places_of(const Track& track) {
 }
 
 TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle) {
-  TrackRadius least;
+  TrackRadius tightest;
   std::vector<std::size_t> index;
   const Polyline bends = stretches(track, index);
   std::optional<Approach> before;
@@ -182,11 +182,11 @@ TrackRadius track_radius(const Polyline& track, const Vehicle& vehicle) {
     if (radius > 0 && track[i - 1] != track[i] && track[i] != track[i + 1]) {
       radius = std::max(radius, radius_through(track[i - 1], track[i], track[i + 1]));
     }
-    if (radius < least.radius_m.value_or(kInfinity)) {
-      least = {radius, i};
+    if (radius < tightest.radius_m.value_or(kInfinity)) {
+      tightest = {radius, i};
     }
   }
-  return least;
+  return tightest;
 }
 
 std::vector<Violation> whole_track_violations(const Track& track, const Request& request,
@@ -233,11 +233,11 @@ Request as_telemetry(Request request) {
 }
 
 Violation not_visited(const FlightEvent::Near& target, const Track& track) {
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (const auto& [t, p] : track) {
-    least = std::min(least, (p - target.at).norm());
+    min_distance = std::min(min_distance, (p - target.at).norm());
   }
-  return {"visit", track.size() - 1, least, target.within_m,
+  return {"visit", track.size() - 1, min_distance, target.within_m,
           "the track does not visit the target at " + place(target.at)};
 }
 

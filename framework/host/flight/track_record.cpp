@@ -4,7 +4,6 @@
 #include "host/flight/track_judge.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace altiplan::host {
 
@@ -74,9 +73,7 @@ std::string Flight::attribute_to() const {
     return first.message;  // of the whole track
   }
   const auto& [time_s, at] = result_.track[std::min(first.at, result_.track.size() - 1)];
-  char when[32];
-  std::snprintf(when, sizeof when, "at %.1f s", time_s);
-  return std::string(when) + ", near " + place(at) + " m: " + first.message;
+  return "at " + with_decimals(time_s, 1) + " s, near " + place(at) + " m: " + first.message;
 }
 
 void Flight::judge_whole() {

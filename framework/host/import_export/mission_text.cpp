@@ -9,20 +9,6 @@
 
 namespace altiplan::host {
 
-std::string rounded_text(double value, int decimals) {
-  char text[400];
-  const auto [end, error] =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
-  std::string result(text, end);
-  if (result.find('.') != std::string::npos) {
-    result.erase(result.find_last_not_of('0') + 1);
-    if (result.back() == '.') {
-      result.pop_back();
-    }
-  }
-  return result == "-0" ? "0" : result;
-}
-
 double rounded(double value, int decimals) {
   const std::string text = rounded_text(value, decimals);
   double result = 0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/formats/mission_file.hpp"
+#include "host/base/words.hpp"
 #include "host/config/scenario_file.hpp"
 
 namespace altiplan::host {
@@ -39,9 +40,7 @@ std::string geojson_text(const MissionText& mission);
 /// Writes in the mission's format.
 std::string mission_text(const MissionText& mission);
 
-/// A number with at most `decimals` decimals, in the C locale, without trailing zeros.
-std::string rounded_text(double value, int decimals);
-/// The value of that text.
+/// The value of `rounded_text`.
 double rounded(double value, int decimals);
 /// "sea", "ground" or "home".
 const char* name(formats::AltitudeFrame frame);

@@ -59,18 +59,18 @@ void check_via_course(const Route& route, const Request& request, const Goal& vi
                       std::size_t first, std::vector<Violation>& found) {
   Request to = request;
   to.goal = via;
-  double least = kInfinity;
+  double min_angle = kInfinity;
   for (std::size_t i = std::max<std::size_t>(first, 1);
        i < route.size() && via.reached_at(route[i]); ++i) {
     const Vec3 arrival = route.leg(i - 1).rate(1);
     const auto course = to.arrival_course(route[i]);
     const double off = course ? turn_angle_horizontal(arrival, *course) : 0;
-    least = std::min(least, off * arrival.norm() > kLengthTolerance ? off : 0);
+    min_angle = std::min(min_angle, off * arrival.norm() > kLengthTolerance ? off : 0);
   }
-  if (std::isfinite(least) && least > kAngleTolerance) {
-    found.push_back({"via_heading", first, degrees(least), 0,
+  if (std::isfinite(min_angle) && min_angle > kAngleTolerance) {
+    found.push_back({"via_heading", first, degrees(min_angle), 0,
                      "the angle between the course at the via point and the one asked for is " +
-                         std::to_string(degrees(least)) + " degrees"});
+                         std::to_string(degrees(min_angle)) + " degrees"});
   }
 }
 }  // namespace
@@ -83,14 +83,15 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
     check_via_course(route, request, via[i], indices[i], result.violations);
   }
   if (passed < via.size()) {
-    double least = kInfinity;
+    double min_distance = kInfinity;
     for (std::size_t i = passed > 0 ? indices.back() : 0; i < route.size(); ++i) {
-      least = std::min(least, (route[i] - via[passed].position).norm());
+      min_distance = std::min(min_distance, (route[i] - via[passed].position).norm());
     }
-    const std::string nearest =
-        std::isfinite(least) ? ": its nearest waypoint is " + with_digits(least, 3) +
-                                   " m away, tolerance_m " + with_digits(via[passed].tolerance_m, 6)
-                             : "";
+    const std::string nearest = std::isfinite(min_distance)
+                                    ? ": its nearest waypoint is " + with_digits(min_distance, 3) +
+                                          " m away, tolerance_m " +
+                                          with_digits(via[passed].tolerance_m, 6)
+                                    : "";
     result.violations.push_back(
         {"via", 0, double(passed), double(via.size()),
          "the route does not pass via point " + std::to_string(passed) + nearest});

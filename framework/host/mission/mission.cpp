@@ -311,10 +311,10 @@ void place_points(const Config& config, Mission& mission) {
 }
 }  // namespace
 
-Mission build_mission(const Config& config, int threads, const Calling& told,
+Mission build_mission(const Config& config, int threads, const Calling& given,
                       const NoteSink& noted) {
   const auto ignore = [](const std::string&) {};
-  const Calling calling = told ? told : ignore;
+  const Calling calling = given ? given : ignore;
   const NoteSink on_note = noted ? noted : ignore;
   const auto began = std::chrono::steady_clock::now();
   const ScenarioFile& file = config.scenario;

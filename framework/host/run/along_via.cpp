@@ -52,11 +52,11 @@ Vec3 velocity_at_end(const Route& route, double speed) {
 /// Index of the leg of the route that is nearest to p.
 std::size_t nearest_leg(const Route& route, const Vec3& p) {
   std::size_t nearest = 0;
-  double least = kInfinity;
+  double min_distance = kInfinity;
   for (std::size_t i = 0; i + 1 < route.size(); ++i) {
     const double distance = point_leg_distance(p, route[i], route[i + 1]);
-    if (distance < least) {
-      least = distance;
+    if (distance < min_distance) {
+      min_distance = distance;
       nearest = i;
     }
   }

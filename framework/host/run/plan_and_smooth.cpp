@@ -133,19 +133,19 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   cuts.push_back(before.size() - 1);
   std::size_t from = 0;
   std::size_t piece = 0;
-  std::string told;  // one message per section: a smoother sees only its own
+  std::string messages;  // one message per section: a smoother sees only its own
   PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
     PlanResult result = smoother.smooth(before.part(from, cuts[piece]), part);
     if (!result.message.empty()) {
-      told += (told.empty() ? "to " : "; to ") +
-              (piece == fixed.size() ? "the goal" : "via point " + std::to_string(piece)) + ": " +
-              result.message;
+      messages += (messages.empty() ? "to " : "; to ") +
+                  (piece == fixed.size() ? "the goal" : "via point " + std::to_string(piece)) +
+                  ": " + result.message;
     }
     from = cuts[piece++];
     return result;
   });
   if (!fixed.empty() && whole.status == PlanStatus::solved) {
-    whole.message = std::move(told);
+    whole.message = std::move(messages);
   }
   return whole;
 }

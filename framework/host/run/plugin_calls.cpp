@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/run/pipeline_run.hpp"
 
-#include <cstdio>
 #include <cstdlib>
 
 #include "altiplan/error.hpp"
 #include "host/base/machine_fault.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 
@@ -38,9 +38,9 @@ void Run::set_budget(Budget& budget, const StepEntry& entry) {
 }
 
 std::string Run::time_budget(const StepEntry& entry) const {
-  char seconds[32];
-  std::snprintf(seconds, sizeof seconds, "%g s", entry.within_s.value_or(options_.timeout_s));
-  return (entry.within_s ? entry.path + ".within_s" : std::string("--timeout")) + " is " + seconds;
+  const double seconds = entry.within_s.value_or(options_.timeout_s);
+  return (entry.within_s ? entry.path + ".within_s" : std::string("--timeout")) + " is " +
+         with_digits(seconds, 6) + " s";
 }
 
 void Run::name_caller(std::string who) {

@@ -36,8 +36,8 @@ const char* kind_name(TraceEvent::Kind kind) {
 }
 }  // namespace
 
-TraceFile::TraceFile(std::filesystem::path file, std::uintmax_t most_bytes)
-    : file_(std::move(file)), lines_("{\"altiplan_trace\": 1}\n"), most_bytes_(most_bytes) {}
+TraceFile::TraceFile(std::filesystem::path file, std::uintmax_t max_bytes)
+    : file_(std::move(file)), lines_("{\"altiplan_trace\": 1}\n"), max_bytes_(max_bytes) {}
 
 void TraceFile::flush() {
   try {
@@ -51,7 +51,7 @@ void TraceFile::flush() {
 }
 
 void TraceFile::add(const TraceEvent& event) {
-  if (bytes_ >= most_bytes_ && event.kind != TraceEvent::Kind::iteration) {
+  if (bytes_ >= max_bytes_ && event.kind != TraceEvent::Kind::iteration) {
     ++left_out_;
     return;
   }

@@ -16,7 +16,7 @@ namespace altiplan::host {
 /// Error if it cannot be written.
 class TraceFile final : public Trace {
  public:
-  TraceFile(std::filesystem::path file, std::uintmax_t most_bytes);
+  TraceFile(std::filesystem::path file, std::uintmax_t max_bytes);
   void begin_step(std::string id) { step_ = std::move(id); }
   void add(const TraceEvent& event) override;
   /// Throws Error if something could not be written.
@@ -33,7 +33,7 @@ class TraceFile final : public Trace {
   std::string lines_;  ///< not yet written; whole lines, so that an incomplete file ends with one
   std::string error_;  ///< why writing stopped; "" if it has not
   std::string step_;
-  std::uintmax_t most_bytes_;
+  std::uintmax_t max_bytes_;
   std::uintmax_t bytes_ = 0;
   std::uintmax_t left_out_ = 0;
 };

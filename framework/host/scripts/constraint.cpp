@@ -24,19 +24,19 @@ void add(std::vector<double>& numbers, const Vec3& point) {
   numbers.insert(numbers.end(), point.begin(), point.end());
 }
 
-AltitudeBand band_of(const Json& told) {
+AltitudeBand band_of(const Json& reported) {
   AltitudeBand band;
-  band.datum =
-      told.at("above_ground").get<bool>() ? AltitudeBand::Datum::ground : AltitudeBand::Datum::sea;
-  band.min = told.at("min_m").is_null() ? -kInfinity : told.at("min_m").get<double>();
-  band.max = told.at("max_m").is_null() ? kInfinity : told.at("max_m").get<double>();
+  band.datum = reported.at("above_ground").get<bool>() ? AltitudeBand::Datum::ground
+                                                       : AltitudeBand::Datum::sea;
+  band.min = reported.at("min_m").is_null() ? -kInfinity : reported.at("min_m").get<double>();
+  band.max = reported.at("max_m").is_null() ? kInfinity : reported.at("max_m").get<double>();
   return band;
 }
 
-/// Tells whether a limit is among those told, and which.
-std::optional<double> found(const Json& told, const char* name) {
-  const auto at = told.find(name);
-  return at == told.end() ? std::nullopt : std::optional(at->get<double>());
+/// Tells whether a limit is among those reported, and which.
+std::optional<double> found(const Json& reported, const char* name) {
+  const auto at = reported.find(name);
+  return at == reported.end() ? std::nullopt : std::optional(at->get<double>());
 }
 
 class ScriptConstraint : public Constraint {
@@ -86,22 +86,22 @@ class ScriptLegConstraint final : public ScriptConstraint {
   bool do_admits_all() const override { return false; }
 };
 
-/// What is told is taken where it is stricter, so that nothing is loosened.
+/// What it reports is taken where it is stricter, so that nothing is loosened.
 void ScriptConstraint::do_tighten(Limits& limits, const Request& request) const {
   if (!tightens_) {
     return;
   }
   Request tightened = request;
   tightened.limits = limits;
-  const Json told = object_
-                        ->answer({{{"tighten", script_values(tightened)}}, {}},
-                                 {request.world.get(), &request}, kAnswerTimeout)
-                        .head.at("limits");
+  const Json reported = object_
+                            ->answer({{{"tighten", script_values(tightened)}}, {}},
+                                     {request.world.get(), &request}, kAnswerTimeout)
+                            .head.at("limits");
   const auto at_least = [&](const char* name, double& limit) {
-    limit = std::max(limit, found(told, name).value_or(limit));
+    limit = std::max(limit, found(reported, name).value_or(limit));
   };
   const auto at_most = [&](const char* name, double& limit) {
-    limit = std::min(limit, found(told, name).value_or(limit));
+    limit = std::min(limit, found(reported, name).value_or(limit));
   };
   at_least("min_clearance_m", limits.min_clearance);
   at_least("min_leg_m", limits.min_leg);
@@ -110,14 +110,14 @@ void ScriptConstraint::do_tighten(Limits& limits, const Request& request) const 
   at_most("max_turn", limits.max_turn_horizontal);
   at_most("max_turn_in_space", limits.max_turn_space);
   at_most("max_route_m", limits.max_route_length);
-  if (const auto above = found(told, "min_ground_clearance_m")) {
+  if (const auto above = found(reported, "min_ground_clearance_m")) {
     limits.min_ground_clearance = std::max(limits.min_ground_clearance.value_or(*above), *above);
   }
-  if (const auto descent = found(told, "max_descent")) {
+  if (const auto descent = found(reported, "max_descent")) {
     limits.max_sink = std::min(limits.max_descent(), *descent);
   }
   at_most("max_climb", limits.max_climb);
-  for (const Json& band : told.value("altitude", Json::array())) {
+  for (const Json& band : reported.value("altitude", Json::array())) {
     limits.altitude.push_back(band_of(band));
   }
 }
@@ -135,9 +135,9 @@ std::vector<Violation> ScriptConstraint::do_violations(const Polyline& route,
   const ScriptMessage answer =
       object_->answer({{{"violations", script_values(request)}}, std::move(numbers)},
                       {request.world.get(), &request}, kAnswerTimeout);
-  for (const Json& told : answer.head.at("violations")) {
-    violations.push_back({"", told.at(0).get<std::size_t>(), told.at(1).get<double>(),
-                          told.at(2).get<double>(), told.at(3).get<std::string>()});
+  for (const Json& reported : answer.head.at("violations")) {
+    violations.push_back({"", reported.at(0).get<std::size_t>(), reported.at(1).get<double>(),
+                          reported.at(2).get<double>(), reported.at(3).get<std::string>()});
   }
   return violations;
 }

@@ -78,11 +78,11 @@ Vec3 vector_of(const Json& three) {
   return {three.at(0).get<double>(), three.at(1).get<double>(), three.at(2).get<double>()};
 }
 
-std::unique_ptr<Environment> cells_of(const Json& told, const std::vector<double>& numbers) {
+std::unique_ptr<Environment> cells_of(const Json& reported, const std::vector<double>& numbers) {
   GridSpec spec;
-  spec.origin = vector_of(told.at("origin_m"));
-  spec.cell = vector_of(told.at("cell_m"));
-  spec.counts = told.at("counts").get<Cell>();
+  spec.origin = vector_of(reported.at("origin_m"));
+  spec.cell = vector_of(reported.at("cell_m"));
+  spec.counts = reported.at("counts").get<Cell>();
   spec.rule = GridSpec::Rule::native;
   VoxelGrid grid(spec);
   std::size_t at = 0;  // the last axis of the array is the fastest
@@ -117,11 +117,11 @@ class ScriptGround final : public kit::FieldLayer<kit::WholeField> {
   LayerInfo info_;
 };
 
-std::unique_ptr<Environment> ground_of(const Json& told, const std::vector<double>& numbers,
+std::unique_ptr<Environment> ground_of(const Json& reported, const std::vector<double>& numbers,
                                        const Site& site) {
-  HeightField field(told.at("origin_m").get<std::array<double, 2>>(),
-                    told.at("spacing_m").get<std::array<double, 2>>(),
-                    told.at("columns").get<int>(), told.at("rows").get<int>(),
+  HeightField field(reported.at("origin_m").get<std::array<double, 2>>(),
+                    reported.at("spacing_m").get<std::array<double, 2>>(),
+                    reported.at("columns").get<int>(), reported.at("rows").get<int>(),
                     {numbers.begin(), numbers.end()});
   return std::make_unique<ScriptGround>(std::move(field), site.vehicle.radius_m);
 }

@@ -120,19 +120,19 @@ void keep_factory_of_kind(PluginEntry& entry) {
 }
 
 /// Called under the lock of load_script.
-const PluginEntry& enter(const fs::path& file, const Json& told) {
+const PluginEntry& enter(const fs::path& file, const Json& reported) {
   static std::deque<Script>& all = *new std::deque<Script>;
   if (all.size() == kMaxScripts) {
     throw PluginError(file.string() + ": a process loads at most " + std::to_string(kMaxScripts) +
                       " plugins written in Python");
   }
-  ScriptParams params(told.at("parameters"));
+  ScriptParams params(reported.at("parameters"));
   const PluginEntry& entry = kEntries[all.size()];
   Script& script = all.emplace_back();
   script.file = fs::absolute(file);
-  script.kind = told.at("kind").get<std::string>();
-  script.name = told.at("name").get<std::string>();
-  script.sentence = told.at("sentence").get<std::string>();
+  script.kind = reported.at("kind").get<std::string>();
+  script.name = reported.at("name").get<std::string>();
+  script.sentence = reported.at("sentence").get<std::string>();
   script.params = std::move(params);
   script.entry = entry;
   script.entry.kind = script.kind.c_str();
@@ -150,15 +150,15 @@ std::vector<const PluginEntry*> entries_of(const Library& library) {
   }
   std::vector<const PluginEntry*> entries;
   for (const Manifest& plugin : library.plugins) {
-    const Json* told = nullptr;
+    const Json* reported = nullptr;
     for (const Json& one : worker.plugins()) {
-      told = one.at("name") == plugin.name && one.at("kind") == plugin.kind ? &one : told;
+      reported = one.at("name") == plugin.name && one.at("kind") == plugin.kind ? &one : reported;
     }
-    if (told == nullptr) {
+    if (reported == nullptr) {
       throw PluginError("announces the " + std::string(plugin.kind) + " '" + plugin.name +
                         "', but does not contain it");
     }
-    entries.push_back(&enter(library.file, *told));
+    entries.push_back(&enter(library.file, *reported));
   }
   return entries;
 }

@@ -45,14 +45,14 @@ Waiting& waiting() {
   return all;
 }
 
-Traits traits_of(const Json& told) {
+Traits traits_of(const Json& reported) {
   Traits traits;
   for (const auto& [name, value] :
        {std::pair("complete", &traits.complete), std::pair("optimal", &traits.optimal),
         std::pair("any_angle", &traits.any_angle), std::pair("anytime", &traits.anytime),
         std::pair("planar", &traits.planar), std::pair("spatial", &traits.spatial),
         std::pair("avoids_obstacles", &traits.avoids_obstacles)}) {
-    *value = told.value(name, *value);
+    *value = reported.value(name, *value);
   }
   return traits;
 }

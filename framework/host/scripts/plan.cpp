@@ -45,10 +45,10 @@ void ScriptPlan::watch_budget() {
   const Budget& budget = request_.budget;
   const bool is_spent =
       too_large_ || budget.stop.stop_requested() || (budget.deadline && now >= *budget.deadline);
-  if (!told_ && is_spent) {
-    told_ = now;
+  if (!stop_requested_ && is_spent) {
+    stop_requested_ = now;
     worker_.send({{"stop", true}});
-  } else if (told_ && now - *told_ > kGrace) {
+  } else if (stop_requested_ && now - *stop_requested_ > kGrace) {
     throw PluginError(
         too_large_ ? "used more memory than its within_mb and did not stop when told to"
                    : "did not stop within half a second of the end of its time, and was ended",
@@ -82,7 +82,7 @@ PlanResult ScriptPlan::result_of(const ScriptMessage& answer) const {
   for (const auto& [name, value] : counters.items()) {
     result.counters.push_back({name, value.get<std::int64_t>()});
   }
-  const bool is_spent = told_.has_value() || head.value("spent", false);
+  const bool is_spent = stop_requested_.has_value() || head.value("spent", false);
   if (head.contains("none") && route_ == nullptr) {
     take_failure(head, result);
     return result;
@@ -103,7 +103,7 @@ PlanResult ScriptPlan::result_of(const ScriptMessage& answer) const {
 }
 
 void ScriptPlan::take_failure(const Json& head, PlanResult& result) const {
-  const bool is_spent = told_.has_value() || head.value("spent", false);
+  const bool is_spent = stop_requested_.has_value() || head.value("spent", false);
   const bool is_cancelled = !too_large_ && request_.budget.stop.stop_requested();
   result.status = !is_spent      ? PlanStatus::no_route
                   : is_cancelled ? PlanStatus::cancelled

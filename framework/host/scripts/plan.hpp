@@ -32,6 +32,6 @@ class ScriptPlan {
   double memory_before_mb_;
   Clock::time_point memory_seen_;
   bool too_large_ = false;
-  std::optional<Clock::time_point> told_;  ///< when it was told to stop
+  std::optional<Clock::time_point> stop_requested_;  ///< when it was told to stop
 };
 }  // namespace altiplan::host

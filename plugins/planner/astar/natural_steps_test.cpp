@@ -6,7 +6,7 @@
 #include "altiplan/kit/lattice/pruning.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::astar {
+namespace altiplan::astar::natural_steps_test {
 namespace {
 
 TEST(NaturalSteps, AreThoseOfPruningWhereNoStepIsRuledOut) {
@@ -25,4 +25,4 @@ TEST(NaturalSteps, AreThoseOfPruningWhereNoStepIsRuledOut) {
   }
 }
 }  // namespace
-}  // namespace altiplan::astar
+}  // namespace altiplan::astar::natural_steps_test
