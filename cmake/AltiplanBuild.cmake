@@ -32,7 +32,9 @@ target_compile_options(altiplan_flags INTERFACE
   -ffp-contract=off
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion>
   # Files of one unit see each other's constants, and types of unnamed namespaces in included files.
-  $<BUILD_INTERFACE:$<IF:$<CXX_COMPILER_ID:GNU>,-Wshadow=local;-Wno-subobject-linkage,-Wshadow>>
+  # Clang has no warning for locals alone.
+  $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage>>
+  $<BUILD_INTERFACE:$<$<NOT:$<OR:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ALTIPLAN_UNITY}>>>:-Wshadow>>
   # g++ 12 warns of std::string's own "text" + string (GCC bug 105651).
   $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>
   $<BUILD_INTERFACE:$<$<BOOL:${ALTIPLAN_WERROR}>:-Werror>>)

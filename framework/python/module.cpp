@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "altiplan_build.hpp"
 #include "python/bindings.hpp"
 
 namespace altiplan::python {

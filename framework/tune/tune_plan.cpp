@@ -5,6 +5,7 @@
 #include <set>
 
 #include "altiplan/attributed.hpp"
+#include "altiplan_build.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"

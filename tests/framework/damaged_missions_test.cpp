@@ -7,7 +7,7 @@
 #include "altiplan/formats/mission_file.hpp"
 #include "support/files.hpp"
 
-namespace altiplan::kit::damaged_missions_test {
+namespace altiplan::formats::damaged_missions_test {
 namespace {
 
 using altiplan::testing::replaced;
@@ -253,4 +253,4 @@ TEST(DamagedMissions, GeoJsonRoutes) {
        {"\"features\"", "\"things\"", "the key 'features' is missing"}});
 }
 }  // namespace
-}  // namespace altiplan::kit::damaged_missions_test
+}  // namespace altiplan::formats::damaged_missions_test

@@ -13,7 +13,7 @@
 
 #include "support/files.hpp"
 
-namespace altiplan::kit::input_file_test {
+namespace altiplan::formats::input_file_test {
 namespace {
 
 using altiplan::testing::TempFolder;
@@ -104,4 +104,4 @@ TEST(InputFile, NeverReadsMoreThanItsCap) {
   EXPECT_THROW(read_file("/proc/self/status", 4), InputError) << "found only while it is read";
 }
 }  // namespace
-}  // namespace altiplan::kit::input_file_test
+}  // namespace altiplan::formats::input_file_test

@@ -11,7 +11,7 @@
 #include "support/files.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::kit::mission_file_test {
+namespace altiplan::formats::mission_file_test {
 namespace {
 
 using altiplan::testing::TempFolder;
@@ -235,4 +235,4 @@ TEST(MissionFile, NeverReadsMoreThanItsCap) {
   EXPECT_TRUE(says(refusal(folder.write("empty.plan", " \n").string()), "is empty"));
 }
 }  // namespace
-}  // namespace altiplan::kit::mission_file_test
+}  // namespace altiplan::formats::mission_file_test

@@ -99,7 +99,7 @@ TEST(LinkPlanTransfer, AFenceIsWrittenAsItWasRead) {
   const formats::MissionFile file = formats::read_mission("downloaded.plan", host::plan_text(plan));
   ASSERT_EQ(file.items.size(), 3U);
   ASSERT_EQ(file.zones.size(), 2U);
-  EXPECT_EQ(file.zones[0].keep_in != file.zones[1].keep_in, true);
+  EXPECT_EQ(file.zones[0].keeps_in() != file.zones[1].keeps_in(), true);
   EXPECT_NE(host::plan_text(plan).find("46.25"), std::string::npos);
 }
 

@@ -9,6 +9,7 @@
 
 #include "altiplan/formats/input_file.hpp"
 #include "altiplan/formats/iso_time.hpp"
+#include "altiplan_build.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/sha256.hpp"

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "altiplan/error.hpp"
+#include "altiplan_build.hpp"
 #include "guarded.hpp"
 
 namespace altiplan::cli {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "completion.hpp"
+#include "altiplan_build.hpp"
 
 #include <algorithm>
 

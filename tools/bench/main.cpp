@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 
+#include "altiplan_build.hpp"
 #include "guarded.hpp"
 #include "measuring.hpp"
 #include "subcommand.hpp"

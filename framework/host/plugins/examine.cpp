@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "altiplan_build.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/words.hpp"
 #include "host/plugins/checksum.hpp"

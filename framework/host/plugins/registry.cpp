@@ -10,6 +10,7 @@
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "altiplan_build.hpp"
 #include "host/base/install_root.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/scripts/script.hpp"

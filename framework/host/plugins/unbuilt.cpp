@@ -73,7 +73,9 @@ std::vector<fs::path> Unbuilt::build(std::vector<Plugin> plugins) {
   }
   const fs::path tree =
       folder_.parent_path().parent_path().parent_path();  // of lib/altiplan/plugins
-  std::vector<std::string> command{"cmake", "--build", tree.string(), "--target"};
+  const std::optional<fs::path> cmake = find_on_path({"cmake"});
+  std::vector<std::string> command{cmake.value_or("cmake").string(), "--build", tree.string(),
+                                   "--target"};
   std::string words;
   std::vector<fs::path> libraries;
   for (const Plugin& plugin : plugins) {
@@ -83,6 +85,9 @@ std::vector<fs::path> Unbuilt::build(std::vector<Plugin> plugins) {
     std::erase_if(plugins_, [&](const Plugin& other) {
       return other.kind == plugin.kind && other.name == plugin.name;
     });
+  }
+  if (!cmake) {
+    throw Error(words + " is not built yet, and there is no cmake on the PATH to build it");
   }
   std::cerr << "altiplan: building " << words << " (needed for the first time)\n";
   const BuildLock lock(folder_ / "buildable.lock");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/result/result_json.hpp"
 
+#include "altiplan_build.hpp"
 #include "host/result/legs_json.hpp"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 
 #include "altiplan/formats/iso_time.hpp"
 #include "altiplan/kit/dubins/dubins.hpp"
+#include "altiplan_build.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
 #include "host/plugins/registry.hpp"

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "altiplan/formats/iso_time.hpp"
+#include "altiplan_build.hpp"
 
 namespace altiplan::study {
 namespace {

@@ -4,8 +4,7 @@
 
 namespace {
 constexpr altiplan::Manifest of_another_api() {
-  altiplan::Manifest manifest =
-      altiplan::make_manifest("constraint", "zeta", "of another API");
+  altiplan::Manifest manifest = altiplan::make_manifest("constraint", "zeta", "of another API");
   ++manifest.api_major;
   manifest.checksum = checksum_of(manifest);
   return manifest;

@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "altiplan_build.hpp"
 #include "commands.hpp"
 #include "host/base/utf8.hpp"
 
