@@ -26,6 +26,7 @@ class UnbuiltTest : public ::testing::Test {
                ::testing::UnitTest::GetInstance()->current_test_info()->name())),
         plugins_(tree_ / "lib/altiplan/plugins"),
         path_(std::getenv("PATH")) {
+    Unbuilt::allow();
     fs::remove_all(tree_);
     fs::create_directories(plugins_);
     fs::create_directories(tree_ / "bin");

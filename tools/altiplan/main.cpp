@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "host/config/overrides.hpp"
+#include "host/plugins/unbuilt.hpp"
 #include "interrupt.hpp"
 #include "study/figures/text.hpp"
 
@@ -142,6 +143,7 @@ int main_checked(int argc, char** argv) {
   if (const int code = guarded("altiplan", begin); code != kDone) {
     return code;
   }
+  host::Unbuilt::allow();
   App app("Plans and judges routes for unmanned aircraft with plugins configured in YAML.",
           "altiplan");
   app.add_option_function("--log-level LEVEL", read_log_level,

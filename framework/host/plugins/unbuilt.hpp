@@ -13,8 +13,11 @@ namespace altiplan::host {
 /// beside their libraries, in `buildable.txt`; what is installed has no such list.
 class Unbuilt {
  public:
-  Unbuilt() = default;
-  /// Reads the list of that folder of libraries; empty where there is none.
+  /// From now on this process may start builds, which `altiplan` does; what tests or fuzzes never
+  /// asks for that.
+  static void allow();
+
+  /// Reads the list of that folder of libraries; empty where there is none or none is allowed.
   explicit Unbuilt(const std::filesystem::path& folder);
 
   /// Names of a kind, in the list's order.
@@ -29,7 +32,7 @@ class Unbuilt {
     std::string kind;
     std::string name;
   };
-  std::vector<std::filesystem::path> build(std::vector<Plugin> plugins);
+  std::vector<std::filesystem::path> build(const std::vector<Plugin>& plugins);
 
   std::filesystem::path folder_;
   std::vector<Plugin> plugins_;
