@@ -8,7 +8,7 @@ set(ALTIPLAN_PLUGIN_CHECKSUM ${CMAKE_CURRENT_LIST_DIR}/plugin_checksum.cpp)
 
 # altiplan_plugin_library(TARGET): how a library of plugins is linked. One exported symbol; never
 # unloaded; a checksum of what is loaded of it, filled in after linking. It needs only those of altiplan's
-# libraries that it uses: what uses the SDK alone works with later versions too.
+# libraries that it uses: what uses the SDK alone works with each version that declares the same.
 function(altiplan_plugin_library target)
   target_link_libraries(${target} PRIVATE altiplan::sdk altiplan::kit altiplan::formats)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${ALTIPLAN_PLUGIN_EXPORTS})

@@ -89,6 +89,16 @@ TEST_F(UnbuiltTest, WhatIsBuiltAlreadyAndWhatNobodyKnowsIsNotBuilt) {
   EXPECT_EQ(asked(), "");
 }
 
+TEST_F(UnbuiltTest, APluginIsBuiltToBeComparedWithAnotherFolders) {
+  const fs::path other = tree_ / "other";
+  fs::create_directories(other);
+  fs::copy(folders::build() / "lib/altiplan/plugins/libaltiplan_planner_jps.so", other / "mine.so");
+  Registry registry({other, plugins_});
+  ASSERT_NE(registry.offering("planner", "jps"), nullptr);
+  EXPECT_NE(asked(), "") << "a copy of the same build, which only building it can tell";
+  EXPECT_EQ(registry.copies().size(), 1u);
+}
+
 TEST_F(UnbuiltTest, AFailedBuildNamesTheCommandThatShowsWhy) {
   cmake("exit 1");
   Registry registry({plugins_});

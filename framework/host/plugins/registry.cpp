@@ -133,6 +133,9 @@ Registry::Registry(std::vector<fs::path> folders) : folders_(std::move(folders))
 }
 
 void Registry::add(const std::vector<fs::path>& files) {
+  if (files.empty()) {
+    return;
+  }
   for (const fs::path& file : files) {
     Library library = examine_library(file);
     const auto first =
@@ -193,12 +196,12 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
 }
 
 const Library* Registry::offering(std::string_view kind, std::string_view name) {
-  const Library* library = find(kind, name);
-  for (std::size_t i = 0; i < unbuilt_.size() && library == nullptr; ++i) {
-    add(unbuilt_[i].build(kind, name));
-    library = find(kind, name);
+  // Also where another folder offers the name: that the two conflict must not depend on what is
+  // built.
+  for (Unbuilt& unbuilt : unbuilt_) {
+    add(unbuilt.build(kind, name));
   }
-  return library;
+  return find(kind, name);
 }
 
 const Library* Registry::find(std::string_view kind, std::string_view name) const {
