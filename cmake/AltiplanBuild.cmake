@@ -61,11 +61,11 @@ function(altiplan_precompile target group)
     <functional> <map> <memory> <optional> <set> <sstream> <string> <thread> <vector> ${ARGN})
 endfunction()
 
-# altiplan_unite(TARGET [FILES]): compiles up to FILES (12) files of the target as one unit; 0: all. What
-# they include is parsed, and what they instantiate is made, once for each unit. Files with options of
-# their own stay by themselves.
+# altiplan_unite(TARGET [FILES]): compiles all files of the target as one unit, or FILES in each. What they
+# include is parsed, and what they instantiate is made, once for each unit. Files with options of their
+# own stay by themselves.
 function(altiplan_unite target)
-  set(files 12)
+  set(files 0)
   if(ARGC GREATER 1)
     set(files ${ARGV1})
   endif()
