@@ -30,6 +30,7 @@ set(ALTIPLAN_SANITIZE "" CACHE STRING "Sanitizers, comma-separated (address,unde
 add_library(altiplan_flags INTERFACE)
 target_compile_options(altiplan_flags INTERFACE
   -ffp-contract=off
+  -fno-math-errno  # roots by an instruction, also of vectors: the same numbers
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion>
   # Files of one unit see each other's constants, and types of unnamed namespaces in included files.
   # Clang has no warning for locals alone.
