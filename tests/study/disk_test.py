@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""disk_test.py PROGRAM PLUGINS: studies on a disk that fills up and in a folder that is read-only: the
-program says so and ends with exit code 3, the store is sound, and with space again the same call
-goes on to what an undisturbed study gives.
+"""disk_test.py PROGRAM PLUGINS REPETITIONS: studies of so many runs of each pipeline on a disk that fills up
+and in a folder that is read-only: the program says so and ends with exit code 3, the store is sound, and with
+space again the same call goes on to what an undisturbed study gives.
 
 The disks are small tmpfs in a mount name space of the test's own; where the system refuses one the
 test is skipped."""
@@ -15,7 +15,7 @@ from study_kit import Study, runs
 PROGRAM, PLUGINS = (os.path.abspath(path) for path in sys.argv[1:3])
 SKIPPED = 77
 PIPELINES = {"straight": "{plan: told}", "long": "{plan: rogue, with: {does: thousands}}"}
-MORE = "repetitions: 6\n"
+MORE = "repetitions: %s\n" % sys.argv[3]  # 3 or more: some runs are stored before the disk is full
 
 
 def mount(folder, options):
@@ -114,8 +114,8 @@ def inside(folder):
 
 
 def main():
-    if len(sys.argv) > 3:
-        inside(sys.argv[3])
+    if len(sys.argv) > 4:
+        inside(sys.argv[4])
         return
     separate = ["unshare", "-Urm", "--"]  # what is mounted goes with it
     with tempfile.TemporaryDirectory(prefix="altiplan_disk_") as folder:
