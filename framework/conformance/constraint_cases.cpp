@@ -146,13 +146,6 @@ std::string motion_text(const Motion& leg) {
          (leg.before ? " after " + text(*leg.before) : "");
 }
 
-bool equal_violations(const std::vector<Violation>& a, const std::vector<Violation>& b) {
-  return std::equal(
-      a.begin(), a.end(), b.begin(), b.end(), [](const Violation& x, const Violation& y) {
-        return x.at == y.at && x.value == y.value && x.limit == y.limit && x.message == y.message;
-      });
-}
-
 /// All answers of a constraint to a fixed set of queries.
 struct ConstraintAnswers {
   std::vector<Figures> limits;
@@ -190,13 +183,11 @@ void pure(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
   const ConstraintAnswers first = ask(*constraint, bench);
   const auto same = [&](const ConstraintAnswers& again, const char* which) {
-    report.expect(
-        first.limits == again.limits && std::equal(first.violations.begin(), first.violations.end(),
-                                                   again.violations.begin(), equal_violations),
-        kConstraintPure, [&] {
-          return std::string("the constraint's answers differ ") + which + ", seed " +
-                 std::to_string(bench.options.seed);
-        });
+    report.expect(first.limits == again.limits && first.violations == again.violations,
+                  kConstraintPure, [&] {
+                    return std::string("the constraint's answers differ ") + which + ", seed " +
+                           std::to_string(bench.options.seed);
+                  });
     report.expect(first.admitted == again.admitted, kLegAlone, [&] {
       return std::string("what the constraint admits differs ") + which + ", seed " +
              std::to_string(bench.options.seed);

@@ -45,8 +45,10 @@ void add_check(py::module_& module) {
       module, "Violation", "What a route violates at one place.",
       {{"constraint", "str", "name of the constraint"},
        {"at", "int", "index of the waypoint, or of the leg's first waypoint"},
-       {"value", "Optional[float]", "in metres or degrees"},
-       {"limit", "Optional[float]", "in metres or degrees"},
+       {"value", "Optional[float]", "in `unit`"},
+       {"limit", "Optional[float]", "in `unit`"},
+       {"unit", "str", "'m', 'deg', 'm/s'; '' where value and limit are no figures"},
+       {"layer", "str", "id of the layer that it concerns, '' if of none"},
        {"message", "str", "a sentence with the place"}});
   violation.def_property_readonly(
       "place", &place_of,

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 from plan_case import TERRAIN, item, plan_of
 
@@ -91,6 +92,14 @@ class Zones(unittest.TestCase):
         self.write("mission.plan", json.dumps(plan))
         verdict, _ = self.call("check", "mission.plan", "--terrain", TERRAIN, code=1)
         self.assertIn("'hospital' of 'fence of the mission'", verdict)
+        told, _ = self.call("check", "mission.plan", "--terrain", TERRAIN, "--json", "--junit", "j.xml",
+                            code=1)
+        one, = json.loads(told)["violations"]
+        self.assertEqual([one[key] for key in ("constraint", "unit", "layer", "zone")],
+                         ["clearance", "m", "fence of the mission", "hospital"])
+        failure, = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot().iter("failure")
+        self.assertEqual(failure.get("type"), "clearance")
+        self.assertRegex(failure.text, r"value -\d.* m, limit 0 m, layer fence of the mission, zone hospital")
 
 
 if __name__ == "__main__":

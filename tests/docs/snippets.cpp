@@ -81,6 +81,7 @@ class LittleClimbing final : public Constraint {
         broken.at = i;  // the leg from waypoint i to the next
         broken.value = climbed;
         broken.limit = max_m_;
+        broken.unit = "m";
         broken.message = "the route climbs more than " + std::to_string(max_m_) + " m in all";
         return {broken};
       }

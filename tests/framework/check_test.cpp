@@ -38,6 +38,26 @@ TEST(Check, EndsAndVolume) {
             "volume@1 volume@1 ");
 }
 
+TEST(Check, ViolationsSayTheirUnitAndLayer) {
+  Request request = empty_request();
+  const auto of = [&](const Route& route, const std::string& rule) {
+    Violation found;
+    for (const Violation& violation : check(route, request).violations) {
+      found = violation.constraint == rule ? violation : found;
+    }
+    return found.unit + " of '" + found.layer + "'";
+  };
+  const Route bend{{0, 0, 100}, {500, 0, 300}, {1000, 500, 100}};
+  request.limits.max_turn_horizontal = request.limits.max_climb = radians(5);
+  request.limits.max_route_length = 10;
+  EXPECT_EQ(of(bend, "turn_angle"), "deg of ''");
+  EXPECT_EQ(of(bend, "climb_angle"), "deg of ''");
+  EXPECT_EQ(of(bend, "route_length"), "m of ''");
+  EXPECT_EQ(of(bend, "goal"), "m of ''");
+  request.world = std::make_shared<const World>(world_of({Sphere{{500, 0, 100}, 50}}));
+  EXPECT_EQ(of({{0, 0, 100}, {1000, 0, 100}}, "clearance"), "m of 'shapes'");
+}
+
 TEST(Check, TurnsInThePlaneAndInSpaceAreHeldToTheLastBit) {
   Request request = empty_request();
   const Route bend{{0, 0, 100}, {500, 0, 100}, {1000, 500, 100}};  // 45 degrees

@@ -101,10 +101,10 @@ TEST_F(RegistryTest, ReadsAManifestWithoutRunningAnything) {
 TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
   const auto refusal = [&](auto edit) { return examine_library(edited("e.so", edit)).refused; };
   EXPECT_EQ(refusal([](Manifest& m) { m.api_major = 7; }),
-            "built for API 7.0, this altiplan offers 2.0; build it again "
+            "built for API 7.0, this altiplan offers 3.0; build it again "
             "(docs/how-to/write-a-plugin.md)");
   EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 1; }),
-            "built for API 2.1, this altiplan offers 2.0; build it again "
+            "built for API 3.1, this altiplan offers 3.0; build it again "
             "(docs/how-to/write-a-plugin.md)");
   EXPECT_EQ(refusal([](Manifest& m) { m.api_minor = 0; }), "");
   EXPECT_EQ(refusal([](Manifest& m) { m.cxx11_abi ^= 1; }),
@@ -122,7 +122,7 @@ TEST_F(RegistryTest, PrintsBothSidesOfAMismatch) {
               m.struct_size = 592;
               m.api_major = 1;
             }),
-            "built for API 1.0, this altiplan offers 2.0; build it again "
+            "built for API 1.0, this altiplan offers 3.0; build it again "
             "(docs/how-to/write-a-plugin.md)");
   EXPECT_EQ(refusal([](Manifest& m) { m.optimised ^= 1; }), "") << "information, no reason";
 }

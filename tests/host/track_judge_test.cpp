@@ -49,6 +49,15 @@ std::vector<std::string> rules(const TrackVerdict& verdict) {
 }
 using Names = std::vector<std::string>;
 
+std::string layer_of_collision(const TrackVerdict& verdict) {
+  for (const Violation& violation : verdict.check.violations) {
+    if (violation.constraint == "collision") {
+      return violation.layer;
+    }
+  }
+  return "";
+}
+
 TEST(TrackJudge, AgreesWithTheFlight) {
   FlightSetup all = setup();
   const FlightResult flown = fly(all);
@@ -65,6 +74,8 @@ TEST(TrackJudge, AgreesWithTheFlight) {
   EXPECT_EQ(verdict.collisions, 1);
   EXPECT_FALSE(verdict.reached);
   EXPECT_EQ(rules(verdict), (Names{"clearance", "collision", "goal"}));
+  EXPECT_EQ(layer_of_collision(verdict), "hidden");
+  EXPECT_EQ(layer_of_collision({hit.check, 1, false, {}, {}}), "hidden");
 }
 
 TEST(TrackJudge, CountsEachTimeThatSomethingIsTouched) {
@@ -93,6 +104,7 @@ TEST(TrackJudge, MovingObstaclesByTheirTimes) {
     const TrackVerdict verdict = judge_track(straight(), all);
     EXPECT_EQ(verdict.collisions, at_s == 50 ? 1 : 0);
     EXPECT_EQ(rules(verdict), at_s == 50 ? Names{"collision"} : Names{});
+    EXPECT_EQ(layer_of_collision(verdict), "") << "what moves is no layer";
   }
 }
 

@@ -178,7 +178,7 @@ class Objects(PythonCase):
         if id(value) in seen or len(seen) > 3000:
             return
         seen[id(value)] = value
-        self.assertTrue(repr(value) and str(value))
+        self.assertTrue(repr(value) and (str(value) or value == ""))
         value == value, value != 3, value is not None and value == None  # noqa: E711
         if type(value).__module__ != "altiplan":
             return

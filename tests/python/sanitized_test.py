@@ -49,7 +49,7 @@ class Stacks(unittest.TestCase):
                                   ((MALLOC, "/dist-packages/numpy/core/a.so", PYTHON, PYTHON), True),
                                   ((MALLOC, PYTHON, OURS, PYTHON), False),
                                   ((MALLOC, OURS, PYTHON, PYTHON), False),
-                                  ((MALLOC, PYTHON, "/build/lib/libaltiplan.so.2", PYTHON), False),
+                                  ((MALLOC, PYTHON, "/build/lib/libaltiplan.so.3", PYTHON), False),
                                   ((MALLOC, PYTHON, "/plugins/libaltiplan_planner_astar.so", PYTHON), False),
                                   ((MALLOC, "/lib/libgdal.so", PYTHON, PYTHON), False)):
             self.assertEqual(sanitized.is_known(LEAK.format(*modules), known), expected, modules)

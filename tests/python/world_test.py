@@ -122,6 +122,7 @@ class Verdicts(PythonCase):
         self.assertFalse(verdict.ok)
         violation = verdict.violations[0]
         self.assertEqual((violation.constraint, violation.at, violation.limit), ("clearance", 0, 2))
+        self.assertEqual((violation.layer, violation.unit), ("wall", "m"))
         self.assertIn("'wall'", violation.message)
         self.assertEqual(violation.place.tolist(), THROUGH[0])
         outside = altiplan.check([*ROUND[:2], [900, 100, 500], ROUND[2]], self.scenario).violations

@@ -102,6 +102,9 @@ Json to_json(const PlanReport& report, const host::Mission& world,
              {"value", violation.value},
              {"limit", violation.limit},
              {"margin", violation.value - violation.limit},
+             {"unit", violation.unit},
+             {"layer", violation.layer},
+             {"zone", finding.zone},
              {"message", violation.message}};
     if (finding.at) {
       const auto [lon, lat] = world.truth.frame().to_lonlat(finding.at->x(), finding.at->y());

@@ -83,7 +83,7 @@ class Replay {
     const double fastest = has_own_limit ? kInfinity : top_speed(request_.vehicle);
     if (!(t1 > t0) || run > fastest * (t1 - t0) * (1 + 1e-6) + kLengthTolerance) {
       found().push_back({"speed", at, t1 > t0 ? run / (t1 - t0) : kInfinity, fastest,
-                         "the track is faster than the vehicle there"});
+                         "the track is faster than the vehicle there", "", "m/s"});
     }
     request_.world = std::shared_ptr<const World>(std::shared_ptr<const World>(), &world_.truth());
     if (a != b) {
@@ -102,7 +102,7 @@ class Replay {
     world_.flown(from.second, from.first, to.second, to.first);
     if (met != nullptr && !touching) {
       ++verdict_.collisions;
-      found().push_back({"collision", at, 0, 0, "the vehicle touches '" + *met + "'"});
+      found().push_back(collision(at, *met, world_.truth()));
     }
     touching = met != nullptr;
   }
@@ -113,7 +113,8 @@ class Replay {
     verdict_.reached = verdict_.collisions == 0 && at_goal(end, request_);
     if (!at_goal(end, request_)) {
       found().push_back({"goal", track.size() - 1, distance_from(request_.goal, end),
-                         arrival_distance(request_), "the track does not end at the goal"});
+                         arrival_distance(request_), "the track does not end at the goal", "",
+                         "m"});
     }
     for (const FlightEvent::Near& target : targets_) {
       found().push_back(not_visited(target, track));
@@ -202,12 +203,12 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
                   "the track turns on a radius of %.9g m, below the limit of %.9g m",
                   *tightest.radius_m, limits.min_turn_radius);
     found.push_back(
-        {"turn_radius", tightest.at, *tightest.radius_m, limits.min_turn_radius, message});
+        {"turn_radius", tightest.at, *tightest.radius_m, limits.min_turn_radius, message, "", "m"});
   }
   const double total = length(places);
   if (total > request.limits.max_route_length + kLengthTolerance) {
     found.push_back({"route_length", 0, total, request.limits.max_route_length,
-                     "the flight is longer than the maximum route length"});
+                     "the flight is longer than the maximum route length", "", "m"});
   }
   for (const NamedConstraint& named : request.constraints) {
     for (Violation& violation : named.constraint->violations(places, request)) {
@@ -232,13 +233,27 @@ Request as_telemetry(Request request) {
   return request;
 }
 
+Violation collision(std::size_t at, const std::string& met, const World& truth) {
+  return {"collision",
+          at,
+          0,
+          0,
+          "the vehicle touches '" + met + "'",
+          truth.find(met) != nullptr ? met : ""};
+}
+
 Violation not_visited(const FlightEvent::Near& target, const Track& track) {
   double min_distance = kInfinity;
   for (const auto& [t, p] : track) {
     min_distance = std::min(min_distance, (p - target.at).norm());
   }
-  return {"visit", track.size() - 1, min_distance, target.within_m,
-          "the track does not visit the target at " + place(target.at)};
+  return {"visit",
+          track.size() - 1,
+          min_distance,
+          target.within_m,
+          "the track does not visit the target at " + place(target.at),
+          "",
+          "m"};
 }
 
 double top_speed(const Vehicle& vehicle) {

@@ -63,6 +63,8 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
 std::vector<Violation> wing_violations(const Track& track, const Request& request,
                                        const Limits& limits);
 
+/// The violation of a vehicle that touches the layer or moving obstacle of that id.
+Violation collision(std::size_t at, const std::string& met, const World& truth);
 /// The violation of a track that does not come near a target.
 Violation not_visited(const FlightEvent::Near& target, const Track& track);
 

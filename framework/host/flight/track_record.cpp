@@ -34,8 +34,7 @@ void Flight::end_on_contact(const Vec3& a, double t0, const Vec3& b, double t1) 
     return;
   }
   ++result_.collisions;
-  result_.check.violations.push_back(
-      {"collision", result_.track.size() - 1, 0, 0, "the vehicle touches '" + *met + "'"});
+  result_.check.violations.push_back(collision(result_.track.size() - 1, *met, world_.truth()));
   end_flight(RunStatus::collided, Reason::none, "collided with '" + *met + "' near " + place(b));
 }
 
@@ -83,7 +82,8 @@ void Flight::judge_whole() {
   const Vec3& end = state_.position;
   if (!at_goal(end, request_)) {  // the goal as it is now
     found.push_back({"goal", result_.track.size() - 1, distance_from(request_.goal, end),
-                     arrival_distance(request_), "the flight ended " + away() + " from the goal"});
+                     arrival_distance(request_), "the flight ended " + away() + " from the goal",
+                     "", "m"});
   }
   for (const FlightEvent::Near& target : targets_) {
     found.push_back(not_visited(target, result_.track));

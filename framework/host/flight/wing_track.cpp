@@ -53,7 +53,7 @@ class WingJudge {
     const double chord = half_turn < kPi / 2 ? 2 * radius_ * std::sin(half_turn) : 0;
     const double rounding = 1e-6 * flown + kLengthTolerance;
     if (step.run() > flown + rounding || step.run() < chord - rounding) {
-      report("speed", step.run() / step.time_s, speed_,
+      report("speed", step.run() / step.time_s, speed_, "m/s",
              "the track goes through the air at %.9g m/s, where the airspeed is %.9g m/s");
     }
   }
@@ -64,6 +64,7 @@ class WingJudge {
     if (limit < kPi / 2 &&
         std::abs(step.way.z()) > flown * std::tan(limit) * (1 + 1e-6) + kLengthTolerance) {
       report("climb_angle", degrees(std::atan2(std::abs(step.way.z()), flown)), degrees(limit),
+             "deg",
              step.way.z() < 0 ? "the descent angle through the air is %.9g degrees, above the "
                                 "limit of %.9g degrees"
                               : "the climb angle through the air is %.9g degrees, above the limit "
@@ -81,20 +82,20 @@ class WingJudge {
     const double turn = turn_angle_horizontal(before.way, step.way) - rounding;
     const double radius = turn > 0 ? flown / (2 * std::sin(turn / 2)) : kInfinity;
     if (radius < radius_ - kLengthTolerance) {
-      report("turn_radius", radius, radius_,
+      report("turn_radius", radius, radius_, "m",
              "the track turns on a radius of %.9g m in the air, below the limit of %.9g m");
     }
   }
 
   /// Once for each limit.
-  void report(const char* rule, double value, double limit, const char* format) {
+  void report(const char* rule, double value, double limit, const char* unit, const char* format) {
     const bool is_known = std::any_of(found_.begin(), found_.end(), [&](const Violation& other) {
       return other.constraint == rule;
     });
     if (!is_known) {
       char message[128];
       std::snprintf(message, sizeof message, format, value, limit);
-      found_.push_back({rule, at_, value, limit, message});
+      found_.push_back({rule, at_, value, limit, message, "", unit});
     }
   }
 

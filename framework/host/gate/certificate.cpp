@@ -113,6 +113,22 @@ std::vector<std::string> labels_of(const PlanReport& report) {
   return labels;
 }
 
+/// "value 31.2 m, limit 60 m, layer fence, zone hospital", as far as there are any.
+std::string figures_of(const Finding& finding) {
+  const Violation& violation = finding.violation;
+  std::string text;
+  const auto add = [&](const char* what, const std::string& value) {
+    text += value.empty() ? "" : (text.empty() ? "" : ", ") + std::string(what) + " " + value;
+  };
+  if (!violation.unit.empty()) {
+    add("value", with_digits(violation.value, 6) + " " + violation.unit);
+    add("limit", with_digits(violation.limit, 6) + " " + violation.unit);
+  }
+  add("layer", violation.layer);
+  add("zone", finding.zone);
+  return text;
+}
+
 std::string suite(const std::string& counts, const std::string& cases) {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
          ">\n  <testsuite name=\"altiplan check\"" + counts + ">\n" + cases +
@@ -173,7 +189,9 @@ std::string junit(const PlanReport& report) {
         if (finding.cure) {
           words += "; cure: " + in_words(*finding.cure, report.name_of(finding.cure->waypoint));
         }
-        failures += "      <failure message=\"" + xml_text(words) + "\"/>\n";
+        failures += "      <failure type=\"" + xml_text(finding.violation.constraint) +
+                    "\" message=\"" + xml_text(words) + "\">" + xml_text(figures_of(finding)) +
+                    "</failure>\n";
       }
     }
     ++count;

@@ -20,11 +20,8 @@ using Kind = MissionItem::Kind;
 
 /// True if the violation is of a layer with ground.
 bool is_ground(const Violation& violation, const Request& request) {
-  const auto& layers = request.world->layers();
-  return std::any_of(layers.begin(), layers.end(), [&](const Layer& layer) {
-    return layer.environment->ground() != nullptr &&
-           violation.message.find("'" + layer.id + "'") != std::string::npos;
-  });
+  const Layer* layer = request.world->find(violation.layer);
+  return layer != nullptr && layer->environment->ground() != nullptr;
 }
 
 /// True if an aeroplane's climb or descent goes through the ground, or beyond what is known of it.
@@ -93,16 +90,13 @@ std::string part_at(const Layer& layer, const Vec3& p) {
   return nearest[0] <= from_border ? names[0] : names[1];
 }
 
-/// Adds the name of the zone to a message about a layer.
+/// Says which zone of the layer is violated: the only place that does.
 void name_zone(Finding& finding, const Request& request) {
-  for (const Layer& layer : request.world->layers()) {
-    const std::string quoted = "'" + layer.id + "'";
-    const std::size_t at = finding.violation.message.find(quoted);
-    if (at != std::string::npos && finding.at) {
-      if (const std::string name = part_at(layer, *finding.at); !name.empty()) {
-        finding.violation.message.insert(at, "'" + name + "' of ");
-      }
-      return;
+  const Layer* layer = request.world->find(finding.violation.layer);
+  if (layer != nullptr && finding.at) {
+    finding.zone = part_at(*layer, *finding.at);
+    if (!finding.zone.empty()) {
+      finding.violation.message += ": '" + finding.zone + "' of '" + layer->id + "'";
     }
   }
 }
@@ -199,6 +193,7 @@ void add_passages(PlanReport& report, const Request& request) {
                         (passage.is_climb ? " after take-off" : " to land") +
                         (is_in_ground ? " goes through the ground, or beyond what is known of it"
                                       : " passes too close to '" + layer->id + "'");
+    violation.layer = is_in_ground ? "" : layer->id;
     Finding finding{violation, {passage.item}, (passage.foot + passage.top) / 2, {}};
     name_zone(finding, request);
     report.findings.push_back(std::move(finding));
@@ -258,6 +253,7 @@ void add_home(PlanReport& report, const formats::MissionFile& plan, const World&
   violation.constraint = "home";
   violation.value = plan.home->altitude_m;
   violation.limit = *ground;
+  violation.unit = "m";
   violation.message =
       "home is at " + with_digits(std::round(plan.home->altitude_m), 6) +
       " m in the mission, where the ground is at " + with_digits(std::round(*ground), 6) + " m: " +

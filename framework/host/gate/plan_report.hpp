@@ -18,6 +18,7 @@ struct Finding {
   std::vector<std::string> items;  ///< as ground stations name them: one, or the two of a leg
   std::optional<Vec3> at;          ///< where it is worst, within a metre, if anywhere
   std::optional<Cure> cure;        ///< of one waypoint
+  std::string zone{};              ///< name of the violated layer's part, "" if it has none
   bool is_over_void = false;       ///< there the elevation model has no height
 };
 

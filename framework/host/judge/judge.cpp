@@ -29,7 +29,8 @@ void check_consistency(const Layer& layer, const Route& route, std::vector<Viola
         found.push_back({kLayerRule, i, clearance, 0,
                          "the layer '" + layer.id + "' (" + layer.plugin +
                              ") contradicts itself: its clearance is " + std::to_string(clearance) +
-                             " m where its blocked says " + (inside ? "inside" : "free")});
+                             " m where its blocked says " + (inside ? "inside" : "free"),
+                         layer.id, "m"});
         return;
       }
     }
@@ -70,7 +71,8 @@ void check_via_course(const Route& route, const Request& request, const Goal& vi
   if (std::isfinite(min_angle) && min_angle > kAngleTolerance) {
     found.push_back({"via_heading", first, degrees(min_angle), 0,
                      "the angle between the course at the via point and the one asked for is " +
-                         std::to_string(degrees(min_angle)) + " degrees"});
+                         std::to_string(degrees(min_angle)) + " degrees",
+                     "", "deg"});
   }
 }
 }  // namespace

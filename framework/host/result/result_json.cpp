@@ -213,6 +213,8 @@ Json to_json(const CheckResult& check) {
                           {"at", violation.at},
                           {"value", number(violation.value)},
                           {"limit", number(violation.limit)},
+                          {"unit", violation.unit},
+                          {"layer", violation.layer},
                           {"message", violation.message}});
   }
   return {{"ok", check.ok()}, {"violations", std::move(violations)}};

@@ -29,9 +29,13 @@ inline constexpr double kChordTolerance = 0.01;
 struct Violation {
   std::string constraint;  ///< plugin name of the constraint
   std::size_t at = 0;      ///< index of the waypoint, or of the leg's first waypoint
-  double value = 0;        ///< in the limit's unit (metres, degrees)
+  double value = 0;        ///< in the limit's unit
   double limit = 0;
-  std::string message;
+  std::string message;  ///< a sentence; whatever it names is data as well
+  std::string layer{};  ///< id of the layer that it concerns; "" if of none, or of several
+  std::string unit{};   ///< of value and limit: "m", "deg", "m/s"; "" where they are no figures
+
+  bool operator==(const Violation&) const = default;
 };
 
 enum class AppliesTo { route, track, both };

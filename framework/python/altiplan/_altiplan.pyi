@@ -63,10 +63,16 @@ class Violation:
         """index of the waypoint, or of the leg's first waypoint"""
     @property
     def value(self) -> Optional[float]:
-        """in metres or degrees"""
+        """in `unit`"""
     @property
     def limit(self) -> Optional[float]:
-        """in metres or degrees"""
+        """in `unit`"""
+    @property
+    def unit(self) -> str:
+        """'m', 'deg', 'm/s'; '' where value and limit are no figures"""
+    @property
+    def layer(self) -> str:
+        """id of the layer that it concerns, '' if of none"""
     @property
     def message(self) -> str:
         """a sentence with the place"""

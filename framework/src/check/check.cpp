@@ -69,7 +69,7 @@ void check_course(const Vec3& course, const Vec3& wanted, const char* rule, std:
                   const char* what, std::vector<Violation>& found) {
   const double off = turn_angle_horizontal(course, wanted);
   if (off > kAngleTolerance && off * course.norm() > kLengthTolerance) {
-    found.push_back(beyond(rule, at, degrees(off), 0, " degrees", what, false));
+    found.push_back(beyond(rule, at, degrees(off), 0, "deg", what, false));
   }
 }
 
@@ -86,7 +86,8 @@ void check_ends(const Route& route, const Request& request, std::vector<Violatio
                                     : (route.front() - start.position).norm();
     found.push_back({"start", 0, off, 0,
                      "the route begins " + distance_text(off) + " m from the " +
-                         (start.loiter ? "loiter circle of the start" : "start")});
+                         (start.loiter ? "loiter circle of the start" : "start"),
+                     "", "m"});
   } else if (start.loiter && route.leg_count() > 0) {
     check_course(route.leg(0).rate(0), start.loiter->course(start.position, route.front()),
                  "start_heading", 0, "the angle between the first leg and the loiter circle",
@@ -100,7 +101,8 @@ void check_ends(const Route& route, const Request& request, std::vector<Violatio
          goal.loiter
              ? "the route ends " + distance_text(off) + " m from the loiter circle of the goal"
              : "the route ends " + fixed(off) + " m from the goal, whose tolerance is " +
-                   fixed(goal.tolerance_m) + " m"});
+                   fixed(goal.tolerance_m) + " m",
+         "", "m"});
   }
 }
 }  // namespace
@@ -117,9 +119,9 @@ CheckResult check(const Route& route, const Request& request) {
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
     if (const double gap = (leg.from - route[i]).norm(); !(gap <= kLengthTolerance)) {
-      found.push_back(
-          {"route", i, gap, 0,
-           "the leg begins " + distance_text(gap) + " m from the end of the one before"});
+      found.push_back({"route", i, gap, 0,
+                       "the leg begins " + distance_text(gap) + " m from the end of the one before",
+                       "", "m"});
     }
     for (Violation& violation : leg_violations(before, leg, request, i)) {
       found.push_back(std::move(violation));
@@ -140,7 +142,7 @@ CheckResult check(const Route& route, const Request& request) {
   }
   const double total = length(route);
   if (total > request.limits.max_route_length + kLengthTolerance) {
-    found.push_back(beyond("route_length", 0, total, request.limits.max_route_length, " m",
+    found.push_back(beyond("route_length", 0, total, request.limits.max_route_length, "m",
                            "the route's length", false));
   }
   std::vector<std::size_t> leg_of;

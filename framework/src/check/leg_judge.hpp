@@ -74,23 +74,33 @@ class LegJudge {
   bool at_most_angle(const Angle& angle, double limit, double widest, const char* rule,
                      const char* what) const {
     return limit >= widest ||
-           at_most(angle(), limit, kAngleTolerance, rule, what, " degrees", degrees(1));
+           at_most(angle(), limit, kAngleTolerance, rule, what, "deg", degrees(1));
   }
 
   bool keeps_place(const Vec3& p, std::size_t index) const {
     if (!request_.volume.contains(p, kLengthTolerance) && !report_([&] {
           const double outside =
               std::max((request_.volume.min - p).maxCoeff(), (p - request_.volume.max).maxCoeff());
-          return Violation{"volume", index, outside, 0,
-                           place(p) + " lies " + fixed(outside) + " m outside the volume"};
+          return Violation{"volume",
+                           index,
+                           outside,
+                           0,
+                           place(p) + " lies " + fixed(outside) + " m outside the volume",
+                           "",
+                           "m"};
         })) {
       return false;
     }
     return !request_.level_m || std::abs(p.z() - *request_.level_m) <= kLengthTolerance ||
            report_([&] {
              return Violation{
-                 "level_flight", index, p.z(), *request_.level_m,
-                 place(p) + " is not on the level of " + fixed(*request_.level_m) + " m"};
+                 "level_flight",
+                 index,
+                 p.z(),
+                 *request_.level_m,
+                 place(p) + " is not on the level of " + fixed(*request_.level_m) + " m",
+                 "",
+                 "m"};
            });
   }
 
@@ -105,14 +115,15 @@ class LegJudge {
       const double outside = std::max((request_.volume.min - box.min).maxCoeff(),
                                       (box.max - request_.volume.max).maxCoeff());
       if (!report_([&] {
-            return Violation{"volume", at_, outside, 0,
-                             "the turn leaves the volume by " + fixed(outside) + " m"};
+            return Violation{
+                "volume", at_, outside, 0, "the turn leaves the volume by " + fixed(outside) + " m",
+                "",       "m"};
           })) {
         return false;
       }
     }
     return at_least(turn_->radius, limits_.min_turn_radius, kLengthTolerance, "turn_radius",
-                    "the turn radius", " m") &&
+                    "the turn radius", "m") &&
            keeps_drift();
   }
 
@@ -123,11 +134,16 @@ class LegJudge {
     const bool crosses = !request_.wind.crossings(a_.z(), b_.z()).empty();
     const double off = (turn_->drift - drift).norm();
     return (off <= kLengthTolerance && !crosses) || report_([&] {
-             return Violation{"wind", at_, off, 0,
+             return Violation{"wind",
+                              at_,
+                              off,
+                              0,
                               crosses ? "the turn crosses a border of layers of wind: cut it there"
                                       : "the turn drifts by " + place(turn_->drift) +
                                             " m, where the wind at its height carries it by " +
-                                            place(drift) + " m"};
+                                            place(drift) + " m",
+                              "",
+                              "m"};
            });
   }
 
@@ -149,18 +165,22 @@ class LegJudge {
            std::isfinite(flight_time(a_, b_, request_.air_speed(), request_.wind)) || report_([&] {
              const double wind = request_.wind.at((a_.z() + b_.z()) / 2).norm();
              return Violation{
-                 "wind", at_, wind, request_.air_speed(),
+                 "wind",
+                 at_,
+                 wind,
+                 request_.air_speed(),
                  "the leg cannot be flown: an airspeed of " + fixed(request_.air_speed()) +
-                     " m/s does not hold its course in a wind of " + fixed(wind) + " m/s"};
+                     " m/s does not hold its course in a wind of " + fixed(wind) + " m/s",
+                 "",
+                 "m/s"};
            });
   }
 
   bool keeps_size() const {
     const double run = turn_ != nullptr ? turn_->length() : leg_.norm();
     return at_least(run, limits_.min_leg, kLengthTolerance, "leg_length", "the leg's length",
-                    " m") &&
-           at_most(run, limits_.max_leg, kLengthTolerance, "leg_length", "the leg's length",
-                   " m") &&
+                    "m") &&
+           at_most(run, limits_.max_leg, kLengthTolerance, "leg_length", "the leg's length", "m") &&
            at_most_angle([&] { return climb_of_leg(); },
                          b_.z() < a_.z() ? limits_.max_descent() : limits_.max_climb, kPi / 2,
                          "climb_angle",
@@ -183,7 +203,7 @@ class LegJudge {
             (turn_ != nullptr || before_->turning
                  ? keeps_tangent()
                  : at_least(corner_radius(*before_, a_, b_, on_the_spot), limits_.min_turn_radius,
-                            kLengthTolerance, "turn_radius", "the turn radius", " m")));
+                            kLengthTolerance, "turn_radius", "the turn radius", "m")));
   }
 
   /// Beside a turn there is no leg left to fillet a corner: it must join its neighbours
@@ -193,9 +213,14 @@ class LegJudge {
         horizontal_turn(*before_, a_, a_ + leg_, request_.vehicle.turns_on_the_spot);
     const double reach = std::min((a_ - before_->from).norm(), leg_.norm());
     return corner <= kAngleTolerance || corner * reach <= kLengthTolerance || report_([&] {
-             return Violation{"turn_radius", at_, 0, limits_.min_turn_radius,
+             return Violation{"turn_radius",
+                              at_,
+                              0,
+                              limits_.min_turn_radius,
                               "the leg begins with a corner of " + fixed(degrees(corner), 6) +
-                                  " degrees beside a turn, where it must be tangential"};
+                                  " degrees beside a turn, where it must be tangential",
+                              "",
+                              "m"};
            });
   }
 
@@ -224,9 +249,9 @@ class LegJudge {
   bool keeps_band(const AltitudeBand& band) const {
     if (band.datum == AltitudeBand::Datum::sea) {
       return at_least(std::min(a_.z(), b_.z()), band.min, kLengthTolerance, "altitude",
-                      "the altitude", " m") &&
+                      "the altitude", "m") &&
              at_most(std::max(a_.z(), b_.z()), band.max, kLengthTolerance, "altitude",
-                     "the altitude", " m");
+                     "the altitude", "m");
     }
     const char* height = "the height above ground";
     return keeps_above(band.min, "altitude", height) &&
@@ -281,7 +306,7 @@ class LegJudge {
   bool keeps_above(double limit, const char* rule, const char* what) const {
     const World& world = *request_.world;
     if (turn_ == nullptr) {
-      return at_least(world.ground_gap(a_, b_, limit), limit, kLengthTolerance, rule, what, " m");
+      return at_least(world.ground_gap(a_, b_, limit), limit, kLengthTolerance, rule, what, "m");
     }
     double gap = kInfinity;
     const bool is_kept = every_piece(*turn_, [&](const Piece& piece) {
@@ -293,13 +318,13 @@ class LegJudge {
       });
     });
     height_kept_ = is_kept ? std::max(height_kept_, limit) : height_kept_;
-    return is_kept || report_([&] { return beyond(rule, at_, gap, limit, " m", what, true); });
+    return is_kept || report_([&] { return beyond(rule, at_, gap, limit, "m", what, true); });
   }
 
   bool keeps_below(double limit, const char* rule, const char* what) const {
     const World& world = *request_.world;
     if (turn_ == nullptr) {
-      return at_most(world.ground_gap_max(a_, b_), limit, kLengthTolerance, rule, what, " m");
+      return at_most(world.ground_gap_max(a_, b_), limit, kLengthTolerance, rule, what, "m");
     }
     double gap = 0;
     const bool is_kept = every_piece(*turn_, [&](const Piece& piece) {
@@ -310,7 +335,7 @@ class LegJudge {
                                                         : Verdict::halve;
       });
     });
-    return is_kept || report_([&] { return beyond(rule, at_, gap, limit, " m", what, false); });
+    return is_kept || report_([&] { return beyond(rule, at_, gap, limit, "m", what, false); });
   }
 
   bool keeps_constraints() const {

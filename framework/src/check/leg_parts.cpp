@@ -46,8 +46,13 @@ Violation too_near(const Layer* layer, const Leg& leg, const Request& request, s
         reasons->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
     where += what.empty() ? "" : " (" + what + ")";
   }
-  return {"clearance", at, clearance, needed,
-          where + ", where " + fixed(needed) + " m of clearance are needed"};
+  return {"clearance",
+          at,
+          clearance,
+          needed,
+          where + ", where " + fixed(needed) + " m of clearance are needed",
+          layer->id,
+          "m"};
 }
 
 Violation body_violation(const Layer& layer, const Leg& leg, const Request& request,
@@ -55,10 +60,14 @@ Violation body_violation(const Layer& layer, const Leg& leg, const Request& requ
   const auto nearest = nearest_leg(*layer.environment, leg.chords(kChordTolerance / 10), kInfinity);
   const double clearance = nearest ? nearest->distance : kInfinity;
   const double reach = request.vehicle.reach_m();
-  return {"body", at, 0, 0,
+  return {"body",
+          at,
+          0,
+          0,
           "between " + place(leg.from) + " and " + place(leg.to) + " the vehicle's body meets '" +
               layer.id + "', which the route itself passes at " + fixed(clearance) +
-              " m (the body reaches " + fixed(reach) + " m from the route)"};
+              " m (the body reaches " + fixed(reach) + " m from the route)",
+          layer.id};
 }
 
 Vec3 ground_ends(const World& world, const Vec3& a, const Vec3& b) {

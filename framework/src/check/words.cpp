@@ -38,8 +38,14 @@ Violation beyond(const char* rule, std::size_t at, double value, double limit, c
   while (digits < 9 && fixed(value, digits) == fixed(limit, digits)) {
     ++digits;
   }
-  return {rule, at, value, limit,
-          what + " is " + fixed(value, digits) + unit + ", " + (too_small ? "below" : "above") +
-              " the limit of " + fixed(limit, digits) + unit};
+  const std::string spelled = std::string(" ") + (unit == std::string("deg") ? "degrees" : unit);
+  return {rule,
+          at,
+          value,
+          limit,
+          what + " is " + fixed(value, digits) + spelled + ", " + (too_small ? "below" : "above") +
+              " the limit of " + fixed(limit, digits) + spelled,
+          "",
+          unit};
 }
 }  // namespace altiplan

@@ -132,7 +132,7 @@ class GroundDistance final : public Constraint {
       const Vec3& at = proof.refused_at();
       const double away = distance(*request.world, at);
       if (away > std::max(worst.value, limit_) && away < kInfinity) {
-        worst = {"", i, away, params_.max_m, sentence(at, away)};
+        worst = {"", i, away, params_.max_m, sentence(at, away), "", "m"};
       }
     }
     return worst.message.empty() ? std::vector<Violation>{} : std::vector{worst};
