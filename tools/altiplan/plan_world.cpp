@@ -66,7 +66,7 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
                   (plan.has_permission ? ", ask: skip" : ""));
   }
   if (has_fence(mission)) {
-    add_zones(plan.plan, "fence of the mission", "");
+    add_zones(plan.plan, "fence of the mission", ", keep_in: all");
   }
   // The ground and the zones alone bound a mission.
   text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";

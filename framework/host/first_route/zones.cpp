@@ -32,8 +32,9 @@ std::string zone_parameters(const std::filesystem::path& file, bool has_start_ti
     return "";  // it says what its limits and hours are
   }
   if (formats::is_mission_file(file.string())) {
-    formats::read_mission(file.string(), text);
-    return "";
+    // Autopilots want to be in all zones of a fence; polygons of a map are areas of their own.
+    const formats::MissionFile mission = formats::read_mission(file.string(), text);
+    return mission.format == formats::MissionFile::Format::kml ? "" : ", keep_in: all";
   }
   const formats::GeoJson json = read_features(file, text);
   std::string parameters;

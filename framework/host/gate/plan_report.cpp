@@ -73,21 +73,31 @@ Vec3 worst_place(Vec3 a, Vec3 b, const Violation& whole, const Request& request)
 }
 
 /// The name of the layer's part that holds the place or is nearest to it, if it has names. Of
-/// keep-in zones it is the one that the place is deepest in, as far as its border.
+/// keep-in zones one of which must hold the place it is the one that the place is deepest in, as
+/// far as its border; where all must, the one whose border is nearest, or that it is farthest out
+/// of.
 std::string part_at(const Layer& layer, const Vec3& p) {
   const std::optional<Drawing> drawing = layer.environment->drawing();
-  std::string names[2];  // of what is kept out, and in
-  double nearest[2] = {kInfinity, kInfinity};
-  for (const Drawn& drawn : drawing ? drawing->shapes : std::vector<Drawn>{}) {
-    const bool keeps_in = drawn.role == Drawn::Role::keep_in;
+  const Drawn* in_the_way = nullptr;
+  const Drawn* around = nullptr;
+  double nearest = kInfinity;
+  double from_border = kInfinity;  // of `around`; negative outside of it
+  if (!drawing) {
+    return "";
+  }
+  for (const Drawn& drawn : drawing->shapes) {
     const double distance = signed_distance(drawn.shape, p);
-    if (distance < nearest[keeps_in]) {
-      nearest[keeps_in] = distance;
-      names[keeps_in] = drawn.name;
+    if (drawn.role != Drawn::Role::keep_in) {
+      in_the_way = distance < nearest ? &drawn : in_the_way;
+      nearest = std::min(nearest, distance);
+    } else if (around == nullptr ||
+               (drawing->keeps_in_all ? -distance < from_border : -distance > from_border)) {
+      around = &drawn;
+      from_border = -distance;
     }
   }
-  const double from_border = std::isfinite(nearest[1]) ? -nearest[1] : kInfinity;
-  return nearest[0] <= from_border ? names[0] : names[1];
+  const Drawn* part = nearest <= from_border ? in_the_way : around;
+  return part == nullptr ? "" : part->name;
 }
 
 /// Says which zone of the layer is violated: the only place that does.

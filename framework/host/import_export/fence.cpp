@@ -12,7 +12,8 @@ namespace {
 /// A zone of one volume.
 struct WorldZone {
   formats::Zone zone;
-  Shape flat;  ///< without vertical limits, and without a keep-out zone's holes
+  Shape flat;              ///< without vertical limits, and without a keep-out zone's holes
+  bool is_choice = false;  ///< a keep-in zone beside others, one of which must hold the vehicle
 };
 
 formats::ZoneLimit limit(double z) {
@@ -97,12 +98,17 @@ std::vector<WorldZone> all_zones(const World& world) {
     if (!drawing) {
       continue;
     }
+    const auto keeps_in = [](const Drawn& drawn) { return drawn.role == Drawn::Role::keep_in; };
+    const bool is_choice =
+        !drawing->keeps_in_all &&
+        std::count_if(drawing->shapes.begin(), drawing->shapes.end(), keeps_in) > 1;
     for (const Drawn& drawn : drawing->shapes) {
       if (drawn.role == Drawn::Role::keep_out || drawn.role == Drawn::Role::keep_in) {
         WorldZone zone = zone_of(world.frame(), drawn);
         if (zone.zone.name.empty()) {
           zone.zone.name = layer.id + "_" + std::to_string(zones.size() + 1);
         }
+        zone.is_choice = is_choice && keeps_in(drawn);
         zones.push_back(std::move(zone));
       }
     }
@@ -131,7 +137,9 @@ Fence zones_of(const World& world) {
 
 Fence flat_fence_of(const World& world, const Polyline& route) {
   Fence fence;
+  std::size_t choices = 0;
   for (const WorldZone& zone : all_zones(world)) {
+    choices += zone.is_choice;
     const formats::ZoneVolume& volume = zone.zone.volumes.front();
     const bool keeps_in = zone.zone.keeps_in();
     const bool has_limits =
@@ -152,12 +160,9 @@ Fence flat_fence_of(const World& world, const Polyline& route) {
     }
     fence.zones.push_back(zone.zone);
   }
-  const auto inside = std::count_if(fence.zones.begin(), fence.zones.end(),
-                                    [](const formats::Zone& zone) { return zone.keeps_in(); });
-  if (inside > 1) {
-    fence.notes.push_back(std::to_string(inside) +
-                          " keep-in zones: autopilots differ on whether one of them must hold the "
-                          "vehicle, or all of them");
+  if (choices > 0) {
+    fence.notes.push_back("an autopilot keeps in all of the fence's " + std::to_string(choices) +
+                          " keep-in zones at once, where the scenario asks for one of them");
   }
   return fence;
 }

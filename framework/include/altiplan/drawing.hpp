@@ -23,5 +23,6 @@ struct Drawn {
 struct Drawing {
   std::vector<Drawn> shapes;
   std::vector<std::array<Vec3, 3>> triangles;  ///< surfaces other than shapes
+  bool keeps_in_all = false;  ///< the vehicle must be in all keep_in shapes; else in one of them
 };
 }  // namespace altiplan

@@ -8,13 +8,12 @@
 
 namespace altiplan::zones {
 
-/// The volume outside keep-in zones. A sphere is allowed if it lies wholly inside one of them; so
-/// the depth of a point is its maximum depth in a zone, and the layer is that far away.
+/// The volume outside keep-in zones, one or more. A sphere is allowed if it lies wholly inside one
+/// of them; so the depth of a point is its maximum depth in a zone, and the layer is that far away.
 class KeepIn {
  public:
   explicit KeepIn(std::vector<Shape> zones) : zones_(std::move(zones)) {}
 
-  bool empty() const { return zones_.shapes().empty(); }
   double clearance(const Vec3& p) const { return -zones_.clearance(p); }
   /// Exact: true if some point of the leg is less than r - 1e-6 m deep in every zone.
   bool blocked(const Vec3& a, const Vec3& b, double r) const;

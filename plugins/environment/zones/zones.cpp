@@ -64,7 +64,7 @@ struct ZoneParams {
     f("id", id).doc("name for messages");
     f("kind", kind,
       {{"keep_out", formats::Restriction::keep_out}, {"keep_in", formats::Restriction::keep_in}})
-        .doc("forbids the inside (keep_out), or everything outside all keep_in zones (keep_in)");
+        .doc("forbids the inside (keep_out), or everything outside the keep_in zones (keep_in)");
     f("cylinder", cylinder).doc("an upright cylinder");
     f("polygon", polygon).doc("an upright prism");
     f("floor_m", floor_m).unit("m").doc("lower limit above sea level; default: no floor");
@@ -78,11 +78,15 @@ struct ZoneParams {
   }
 };
 
+/// How many of several keep-in zones must hold the vehicle.
+enum class KeepInRule { any, all };
+
 struct Params {
   std::vector<ZoneParams> list;
   std::optional<Path> file;
   FileRules rules;
   PublishedRules published;
+  KeepInRule keep_in = KeepInRule::any;
   bool clip = false;
   double horizon_s = 3600;
 
@@ -96,6 +100,10 @@ struct Params {
             "(.waypoints, .txt)");
     rules.describe(f);
     published.describe(f);
+    f("keep_in", keep_in, {{"any", KeepInRule::any}, {"all", KeepInRule::all}})
+        .doc(
+            "of several keep_in zones the vehicle must be in one (any), or in every one (all), as "
+            "autopilots ask of a fence");
     f("clip", clip)
         .doc(
             "drop keep-out zones outside the world's bounds (the volume, else the preceding "
@@ -123,6 +131,7 @@ class Zones final : public Environment {
     std::optional<Frame> frame;
     std::vector<Shape> keep_out;
     std::vector<Shape> keep_in;
+    KeepInRule rule;
     std::vector<GroundPrism> above_ground;
     std::vector<std::string> above_ground_names;
     Drawing drawing;
@@ -131,7 +140,9 @@ class Zones final : public Environment {
     std::string why_none;  // zones lie within the bounds
     std::vector<Threat> threats;
 
-    Reader(const Params& params, const Site& where) : site(where), horizon_s(params.horizon_s) {
+    Reader(const Params& params, const Site& where)
+        : site(where), horizon_s(params.horizon_s), rule(params.keep_in) {
+      drawing.keeps_in_all = rule == KeepInRule::all;
       if (params.file) {
         try {
           read_file(params);
@@ -148,12 +159,27 @@ class Zones final : public Environment {
           throw ParameterError("list." + std::to_string(n), error.what());
         }
       }
-      notes.push_back(std::to_string(keep_out.size() + above_ground.size()) + " keep-out and " +
-                      std::to_string(keep_in.size()) + " keep-in zones, " +
-                      std::to_string(inactive) + " not active");
+      notes.push_back(
+          std::to_string(keep_out.size() + above_ground.size()) + " keep-out and " +
+          std::to_string(keep_in.size()) + " keep-in zones" +
+          (keep_in.size() > 1 && drawing.keeps_in_all ? ", to be in all of them, " : ", ") +
+          std::to_string(inactive) + " not active");
       if (!why_none.empty()) {
         notes.push_back(why_none);
       }
+    }
+
+    /// One for each zone that must hold the vehicle, or one of all zones.
+    std::vector<KeepIn> kept_in() {
+      std::vector<KeepIn> groups;
+      if (rule == KeepInRule::any && !keep_in.empty()) {
+        groups.emplace_back(std::move(keep_in));
+      } else {
+        for (Shape& zone : keep_in) {
+          groups.emplace_back(std::vector<Shape>{std::move(zone)});
+        }
+      }
+      return groups;
     }
 
     void add(bool keeps_in, const Shape& shape, const std::string& name) {
@@ -299,7 +325,7 @@ class Zones final : public Environment {
 
   explicit Zones(Reader reader)
       : keep_out_(std::move(reader.keep_out)),
-        keep_in_(std::move(reader.keep_in)),
+        keep_in_(reader.kept_in()),
         above_ground_(*reader.site.before, std::move(reader.above_ground)),
         over_approximation_(above_ground_.over_approximation(reader.site.vehicle.radius_m)),
         drawing_(std::move(reader.drawing)),
@@ -314,19 +340,24 @@ class Zones final : public Environment {
     if (!above_ground_.empty()) {
       nearest = std::min(nearest, above_ground_.clearance(p));
     }
-    return keep_in_.empty() ? nearest : std::min(nearest, keep_in_.clearance(p));
+    for (const KeepIn& zones : keep_in_) {
+      nearest = std::min(nearest, zones.clearance(p));
+    }
+    return nearest;
   }
   bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
     return keep_out_.blocked(a, b, r) || above_ground_.blocked(a, b, r) ||
-           (!keep_in_.empty() && keep_in_.blocked(a, b, r));
+           std::any_of(keep_in_.begin(), keep_in_.end(),
+                       [&](const KeepIn& zones) { return zones.blocked(a, b, r); });
   }
   void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
     keep_out_.near(p, reach, sink);
     const int count = static_cast<int>(keep_out_.shapes().size());
     above_ground_.near(p, reach, count, sink);
-    if (!keep_in_.empty()) {
-      Nearby outside = keep_in_.nearest(p);
-      outside.id = count + static_cast<int>(above_ground_.size());
+    int id = count + static_cast<int>(above_ground_.size());
+    for (const KeepIn& zones : keep_in_) {
+      Nearby outside = zones.nearest(p);
+      outside.id = id++;
       if (outside.distance <= reach) {
         sink(outside);
       }
@@ -335,8 +366,8 @@ class Zones final : public Environment {
   void do_rasterize(VoxelGrid& grid) const override {
     keep_out_.rasterize(grid);
     above_ground_.rasterize(grid);
-    if (!keep_in_.empty()) {
-      keep_in_.rasterize(grid);
+    for (const KeepIn& zones : keep_in_) {
+      zones.rasterize(grid);
     }
   }
   double do_over_approximation() const override { return over_approximation_; }
@@ -353,11 +384,12 @@ class Zones final : public Environment {
   }
   bool do_meets(const SweptVolume& volume) const override {
     return keep_out_.meets(volume) || above_ground_.meets(volume) ||
-           (!keep_in_.empty() && keep_in_.meets(volume));
+           std::any_of(keep_in_.begin(), keep_in_.end(),
+                       [&](const KeepIn& zones) { return zones.meets(volume); });
   }
 
   kit::ObstacleSet keep_out_;
-  KeepIn keep_in_;
+  std::vector<KeepIn> keep_in_;  ///< each must hold the vehicle
   GroundZones above_ground_;
   double over_approximation_;
   mutable Drawing drawing_;

@@ -97,6 +97,75 @@ TEST(Zones, KeepInBlocksAllOutsideOfTheUnion) {
   EXPECT_EQ(layer->bounds().max.x(), kInfinity);
 }
 
+constexpr const char* kTwoFences =
+    "list: [{kind: keep_in, polygon: {outline_m: [[0, 0], [100, 0], [100, 100], [0, 100]]}},"
+    " {kind: keep_in, cylinder: {at_m: [120, 50], radius_m: 50}}]";
+
+TEST(Zones, KeepInAllBlocksAllOutsideOfTheIntersection) {
+  const auto layer = zones(std::string("{keep_in: all, ") + kTwoFences + "}");
+  EXPECT_NEAR(layer->clearance({90, 50, 0}), 10, 1e-9);
+  EXPECT_NEAR(layer->clearance({50, 50, 0}), -20, 1e-9);   // outside of the circle alone
+  EXPECT_NEAR(layer->clearance({130, 50, 0}), -30, 1e-9);  // outside of the square alone
+  EXPECT_FALSE(layer->blocked({80, 50, 0}, {90, 50, 900}, 10));
+  EXPECT_TRUE(layer->blocked({80, 50, 0}, {90, 50, 900}, 10.1));
+  EXPECT_TRUE(layer->blocked({50, 50, 0}, {130, 50, 0}, 0));
+  EXPECT_TRUE(layer->drawing()->keeps_in_all);
+  EXPECT_FALSE(zones(std::string("{") + kTwoFences + "}")->drawing()->keeps_in_all);
+  int count = 0;
+  layer->near({90, 50, 0}, 40, [&](const Nearby&) { ++count; });
+  EXPECT_EQ(count, 2) << "each fence's border is an obstacle";
+}
+
+// The free space of `all` is the intersection of the zones': what blocks is the union of what
+// each alone blocks, so its distances and its legs are those of the nearest.
+TEST(Zones, KeepInAllIsAsStrictAsEachZoneAlone) {
+  RandomStream random;
+  const auto number = [](double value) { return std::to_string(value); };
+  for (int n = 0; n < 200; ++n) {
+    std::string list;
+    std::vector<std::unique_ptr<Environment>> alone;
+    const int count = 1 + int(random.uniform(0, 4));
+    for (int k = 0; k < count; ++k) {
+      const double x = random.uniform(-30, 30);
+      const double y = random.uniform(-30, 30);
+      std::string zone = "{kind: keep_in, floor_m: " + number(random.uniform(-60, 0)) + ", ";
+      if (k % 3 == 2) {
+        zone += "cylinder: {at_m: [" + number(x) + ", " + number(y) +
+                "], radius_m: " + number(random.uniform(30, 90)) + "}}";
+      } else {  // star-shaped, hence without a crossing; mostly concave
+        zone += "polygon: {outline_m: [";
+        const int corners = 3 + int(random.uniform(0, 7));
+        for (int c = 0; c < corners; ++c) {
+          const double angle = 2 * kPi * c / corners;
+          const double radius = random.uniform(40, 120);
+          zone += (c > 0 ? ", [" : "[") + number(x + radius * std::cos(angle)) + ", " +
+                  number(y + radius * std::sin(angle)) + "]";
+        }
+        zone += "]}}";
+      }
+      list += (k > 0 ? ", " : "") + zone;
+      alone.push_back(zones("{list: [" + zone + "]}"));
+    }
+    const auto all = zones("{keep_in: all, list: [" + list + "]}");
+    const auto place = [&] {
+      return Vec3(random.uniform(-120, 120), random.uniform(-120, 120), random.uniform(-70, 70));
+    };
+    for (int m = 0; m < 50; ++m) {
+      const Vec3 a = place();
+      const Vec3 b = m % 2 == 0 ? place() : Vec3(a + 0.1 * place());
+      const double r = random.uniform(0, 20);
+      double nearest = kInfinity;
+      bool is_blocked = false;
+      for (const auto& one : alone) {
+        nearest = std::min(nearest, one->clearance(a));
+        is_blocked = is_blocked || one->blocked(a, b, r);
+      }
+      EXPECT_EQ(all->clearance(a), nearest) << list;
+      EXPECT_EQ(all->blocked(a, b, r), is_blocked) << list;
+    }
+  }
+}
+
 // Sampled depths compared with the exact result, including zones with concave outlines.
 TEST(Zones, KeepInLegsAgreeWithSamples) {
   const auto layer = zones(
