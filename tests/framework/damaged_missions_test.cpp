@@ -146,7 +146,11 @@ TEST(DamagedMissions, Plans) {
        {"\"radius\": 90", "\"radius\": -90", "expected a radius above 0 m, found -90"},
        {"\"radius\": 90", "\"radius\": 1e300", "expected a radius"},
        {"\"center\": [47.1, 8.1], ", "", "circles.0.circle: the key 'center' is missing"},
-       {"\"points\": []", "\"points\": 3", "rallyPoints.points: expected a list, found 3"}});
+       {"\"points\": []", "\"points\": 3", "rallyPoints.points: expected a list, found 3"},
+       {"\"points\": []", "\"points\": [[47.4, 8.5]]",
+        "rallyPoints.points.0: expected [latitude, longitude, altitude]"},
+       {"\"points\": []", "\"points\": [[147.4, 8.5, 9]]", "rallyPoints.points.0: expected"},
+       {"\"points\": []", "\"points\": [[47.4, 8.5, 1e9]]", "rallyPoints.points.0: "}});
 }
 
 TEST(DamagedMissions, Waypoints) {
@@ -158,7 +162,10 @@ TEST(DamagedMissions, Waypoints) {
        {"*", kWaypoints.substr(0, kWaypoints.size() - 20), "m.waypoints:4: expected 12 columns"},
        {"*", std::string("PK\3\4rest"), "a ZIP archive (KMZ?)"},
        {"*", std::string("\0\1\2\3", 4), "m.waypoints:1: expected QGC WPL 110"},
-       {"*", "RALLY 1 2 3\n", "a list of rally points"},
+       {"*", "RALLY 1 2 3\n", "m.waypoints:1: expected RALLY and 6 numbers"},
+       {"*", "RALLY 1 2 3 4 5 0\nQGC WPL 110\n", "m.waypoints:2: expected RALLY and 6 numbers"},
+       {"*", "RALLY 91 2 3 4 5 0\n", "m.waypoints:1: expected longitude in [-180, 180]"},
+       {"*", "RALLY 1 2 x 4 5 0\n", "m.waypoints:1: expected a number, found 'x'"},
        {"*", "47.1 8.5\n47.2 8.6\n", "in the old format"},
        {"\t50\t1", "\t50\t1\t9", "m.waypoints:4: expected 12 columns, found 13"},
        {"2\t0\t3\t16", "3\t0\t3\t16", "m.waypoints:4: expected item 2, found 3"},

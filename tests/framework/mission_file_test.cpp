@@ -80,7 +80,6 @@ TEST(MissionFile, RefusesOtherVersionsAndSaysWhichOtherFormatItIs) {
        "mission.version: expected version 2, found 7"},
       {"qgc_OldFileFormat.mission", "in the old format (.mission)"},
       {"mavproxy_springvalley-foamy-fence.txt", "an ArduPilot fence in the old format"},
-      {"mavproxy_springvalley-foamy-rally.txt", "a list of rally points (RALLY)"},
   };
   for (const auto& [name, words] : refused) {
     const std::string file = (folder / name).string();
@@ -164,6 +163,43 @@ TEST(MissionFile, ReadsCirclesOfBothFenceForms) {
   EXPECT_EQ(wpl.zones[0].volumes[0].radius_m, 120.5);
   EXPECT_EQ(wpl.zones[0].volumes[0].centre, (Point2{25.2, 60.1}));
   EXPECT_FALSE(wpl.zones[1].keeps_in());
+}
+
+TEST(MissionFile, KeepsRallyPoints) {
+  const MissionFile wpl = read_mission("f.txt",
+                                       "QGC WPL 110\n0\t0\t3\t5100\t0\t0\t0\t0\t60.1\t25.2\t30\t1\n"
+                                       "1\t0\t0\t5100\t0\t0\t0\t0\t60.2\t25.3\t200.5\t1\n");
+  ASSERT_EQ(wpl.rally.size(), 2U);
+  EXPECT_EQ(wpl.rally[0].lat, 60.1);
+  EXPECT_EQ(wpl.rally[0].lon, 25.2);
+  EXPECT_EQ(wpl.rally[0].altitude_m, 30);
+  EXPECT_EQ(wpl.rally[0].frame, AltitudeFrame::home);
+  EXPECT_EQ(wpl.rally[1].frame, AltitudeFrame::sea);
+  EXPECT_TRUE(wpl.items.empty());
+  EXPECT_TRUE(wpl.notes.empty());
+  const MissionFile plan = read_mission("f.plan", R"({
+"fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
+"mission": {"version": 2, "firmwareType": 3, "vehicleType": 2, "cruiseSpeed": 15, "hoverSpeed": 5,
+ "plannedHomePosition": [47.4, 8.5, 480], "items": []},
+"geoFence": {"version": 2, "polygons": [], "circles": []},
+"rallyPoints": {"version": 2, "points": [[47.41, 8.51, 40]]}})");
+  ASSERT_EQ(plan.rally.size(), 1U);
+  EXPECT_EQ(plan.rally[0].lat, 47.41);
+  EXPECT_EQ(plan.rally[0].lon, 8.51);
+  EXPECT_EQ(plan.rally[0].altitude_m, 40);
+  EXPECT_EQ(plan.rally[0].frame, AltitudeFrame::home);
+  EXPECT_TRUE(plan.notes.empty());
+}
+
+TEST(MissionFile, ReadsAListOfRallyPoints) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "missions");
+  const MissionFile list =
+      read_mission((folder / "mavproxy_springvalley-foamy-rally.txt").string());
+  ASSERT_EQ(list.rally.size(), 1U);
+  EXPECT_EQ(list.rally[0].lat, -35.281194);
+  EXPECT_EQ(list.rally[0].lon, 149.006725);
+  EXPECT_EQ(list.rally[0].altitude_m, 100);
+  EXPECT_EQ(list.rally[0].frame, AltitudeFrame::home);
 }
 
 std::string kml(const std::string& placemarks) {

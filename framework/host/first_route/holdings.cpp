@@ -96,6 +96,9 @@ void add_fence(const formats::MissionFile& mission, Extent& extent, FileInfo& in
     info.facts.push_back("fence: " + counted(keep_in, "keep-in zone") + ", " +
                          counted(mission.zones.size() - keep_in, "keep-out zone"));
   }
+  if (!mission.rally.empty()) {
+    info.facts.push_back(counted(mission.rally.size(), "rally point"));
+  }
 }
 }  // namespace
 

@@ -201,7 +201,8 @@ std::string junit(const PlanReport& report) {
   };
   const auto is_of_route = [](const Finding& finding) {
     const std::string& rule = finding.violation.constraint;
-    return rule != "climb" && rule != "descent" && rule != "not_judged" && rule != "home";
+    return rule != "climb" && rule != "descent" && rule != "not_judged" && rule != "home" &&
+           rule != "rally";
   };
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const bool is_last = i + 1 == route.leg_count();  // has what concerns the last waypoint or all
@@ -214,6 +215,9 @@ std::string junit(const PlanReport& report) {
     const std::string what = passage.is_climb ? "climb" : "descent";
     add(what + " of " + passage.item,
         [&](const Finding& finding) { return finding.violation.constraint == what; });
+  }
+  for (const std::string& point : report.rally) {
+    add(point, [&](const Finding& finding) { return finding.items == std::vector{point}; });
   }
   for (const char* whole : {"not_judged", "home"}) {
     add(whole, [&](const Finding& finding) { return finding.violation.constraint == whole; });

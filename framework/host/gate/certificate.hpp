@@ -22,7 +22,7 @@ std::string place_in_words(const Vec3& p, const Request& request);
 std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis,
                         const std::vector<double>& arrivals);
 
-/// The verdict as JUnit XML: one test case a leg, climb and descent.
+/// The verdict as JUnit XML: one test case a leg, climb, descent and rally point.
 std::string junit(const PlanReport& report);
 /// The same where there is no verdict.
 std::string junit_of_error(const std::string& file, const std::string& message);

@@ -225,6 +225,35 @@ void add_ways(PlanReport& report, const Request& request) {
   }
 }
 
+/// A vehicle may be sent to a rally point from anywhere: the place alone is judged, not a way
+/// there.
+void add_rally(PlanReport& report, const formats::MissionFile& plan, const Request& request) {
+  Request alone = request;
+  alone.limits.min_leg = 0;  // a place has no length
+  for (const MissionPoint& point : plan.rally) {
+    const std::string name = "rally point " + std::to_string(report.rally.size() + 1);
+    report.rally.push_back(name);
+    const auto add = [&](Finding finding) {
+      finding.violation.constraint = "rally";
+      report.findings.push_back(std::move(finding));
+    };
+    try {
+      const Vec3 p = to_local(point, plan.home, *request.world);
+      for (const Violation& violation :
+           leg_violations(std::nullopt, Leg::straight(p, p), alone, 0)) {
+        Finding finding{violation, {name}, p, {}};
+        name_zone(finding, request);
+        name_void(finding, request);
+        add(std::move(finding));
+      }
+    } catch (const Error& error) {  // where it is cannot be told
+      Violation violation;
+      violation.message = error.what();
+      add({violation, {name}, {}, {}});
+    }
+  }
+}
+
 void add_moves(PlanReport& report, const formats::MissionFile& plan) {
   for (const formats::MissionMove& move : plan.moves) {
     Violation violation;
@@ -333,7 +362,9 @@ void expect_route(const std::string& file, const formats::MissionFile& plan) {
   if (plan.items.empty()) {
     throw Error(file + ": it contains no route" +
                 (plan.moves.empty()
-                     ? plan.zones.empty() ? "" : ": it contains only zones"
+                     ? !plan.zones.empty()   ? ": it contains only zones"
+                       : !plan.rally.empty() ? ": it contains only rally points"
+                                             : ""
                      : ", and where " + name_of_move(plan.moves.front()) + " flies is not judged"));
   }
 }
@@ -364,6 +395,7 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   add_violations(report, judge(route, request, own_ends ? std::vector<Goal>{} : world.via),
                  request);
   add_ways(report, request);
+  add_rally(report, plan, request);
   add_passages(report, request);
   add_moves(report, flown);
   add_home(report, plan, world.truth);

@@ -32,7 +32,8 @@ struct PlanReport {
   ImportedRoute imported;
   std::vector<Passage> passages;
   std::vector<Way> ways;
-  std::vector<Finding> findings;  ///< none: passed
+  std::vector<std::string> rally;  ///< names of the rally points: "rally point 1"
+  std::vector<Finding> findings;   ///< none: passed
   Measures measures;
   std::vector<std::string> notes;  ///< how the file and the world were read
 
@@ -51,7 +52,7 @@ void expect_route(const std::string& file, const formats::MissionFile& plan);
 /// Judges the mission's route and, by the layers but the ground, its climb from home and its
 /// descent to land. A landing that is not below the item before it, and a return at the end, are
 /// flown to at that item's height, a landing by an aeroplane straight down to the ground. The way
-/// from home and whole circles of loiters are judged as legs. Other
+/// from home and whole circles of loiters are judged as legs, and rally points as places. Other
 /// commands that fly somewhere, and heights relative to a home that is more than kHomeTolerance off
 /// the ground, are findings. Throws Error for a mission wholly beside the ground. With `own_ends`
 /// the route need not begin and end where the world's scenario says. Messages begin with `file`.

@@ -126,8 +126,15 @@ void read_fence(const Node& fence, MissionFile& mission) {
 
 void read_rally_points(const Node& rally, MissionFile& mission) {
   rally.at("version").expect_version(1, 2);
-  if (const std::size_t count = rally.at("points").size(); count > 0) {
-    mission.notes.push_back(std::to_string(count) + " rally points skipped");
+  const Node points = rally.at("points");
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Node point = points.at(n);
+    if (point.size() != 3) {
+      point.wrong("[latitude, longitude, altitude]");
+    }
+    const Point2 at = point.place_on_earth();
+    mission.rally.push_back({at[0], at[1], point.at(2).number(), AltitudeFrame::home});
+    point.told([&] { expect_altitude(mission.rally.back().altitude_m); });
   }
 }
 

@@ -144,6 +144,36 @@ class FenceReader {
   std::size_t returns_ = 0;
 };
 
+constexpr int kRallyPoint = 5100;
+
+MissionPoint rally_point(double lat, double lon, double altitude_m, AltitudeFrame frame) {
+  expect_position(lon, lat);
+  expect_altitude(altitude_m);
+  return {lon, lat, altitude_m, frame};
+}
+
+bool is_rally_list(const std::vector<std::string_view>& words) {
+  return !words.empty() && words[0] == "RALLY";
+}
+
+/// A line of MAVProxy's list of rally points. What follows the height above home tells an aeroplane
+/// how to land there.
+MissionPoint rally_line(const std::vector<std::string_view>& words) {
+  constexpr std::size_t kWords = 7;
+  if (!is_rally_list(words) || words.size() != kWords) {
+    throw Error("expected RALLY and 6 numbers, found " + std::to_string(words.size()) + " words");
+  }
+  std::array<double, kWords> numbers{};
+  for (std::size_t n = 1; n < kWords; ++n) {
+    const std::optional<double> number = number_of(words[n]);
+    if (!number || !std::isfinite(*number)) {
+      throw Error("expected a number, found " + excerpt(words[n]));
+    }
+    numbers[n] = *number;
+  }
+  return rally_point(numbers[1], numbers[2], numbers[3], AltitudeFrame::home);
+}
+
 /// Throws Error naming what a text with another first line may be.
 void expect_header(std::string_view first_line) {
   const std::vector<std::string_view> words = words_of(first_line);
@@ -152,9 +182,6 @@ void expect_header(std::string_view first_line) {
       throw Error("expected QGC WPL 110, found version " + excerpt(words[2]));
     }
     return;
-  }
-  if (!words.empty() && words[0] == "RALLY") {
-    throw Error("this is a list of rally points (RALLY), expected a mission or a fence");
   }
   if (words.size() == 2 && number_of(words[0]) && number_of(words[1])) {
     throw Error(
@@ -179,6 +206,7 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
   std::size_t line = 0;
   std::size_t number = 0;
   bool begun = false;
+  bool is_list = false;  // of rally points
   const auto add = [&](const Row& row) {
     if (row.whole(0, 1'000'000) != int(number)) {
       throw Error("expected item " + std::to_string(number) + ", found " +
@@ -186,6 +214,9 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
     }
     if (FenceReader::is_fence(row.command())) {
       fence.add(row, line);
+    } else if (row.command() == kRallyPoint) {
+      mission.rally.push_back(
+          rally_point(row.lat(), row.lon(), row.altitude(), frame_of(row.frame())));
     } else if (number == 0 && is_home(row)) {
       expect_position(row.lon(), row.lat());
       expect_altitude(row.altitude());
@@ -209,10 +240,14 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
       const std::string_view content = std::string_view(text).substr(at, end - at);
       at = end + 1;
       ++line;
-      if (words_of(content).empty()) {
+      const std::vector<std::string_view> words = words_of(content);
+      if (words.empty()) {
         continue;
       }
-      if (begun) {
+      is_list = is_list || (!begun && is_rally_list(words));
+      if (is_list) {
+        mission.rally.push_back(rally_line(words));
+      } else if (begun) {
         add(Row(content));
       } else {
         expect_header(content);
@@ -224,7 +259,7 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
     throw Error(file + ":" + std::to_string(line) + ": " + error.what());
   }
   commands.finish();
-  if (number == 0) {
+  if (number == 0 && !is_list) {
     throw Error(file + ": contains no mission items");
   }
   return mission;

@@ -69,6 +69,9 @@ struct MissionFile {
   std::vector<MissionMove> moves;  ///< not part of the items
   std::string route_problem;       ///< why the items are not a route, "" where they are
   std::vector<Zone> zones;
+  /// Where the vehicle may return to instead of home: of a .plan, and of QGC WPL 110 (MAV_CMD
+  /// 5100).
+  std::vector<MissionPoint> rally;
   std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
   /// Skipped parts, one per line ("4 commands that fly nowhere skipped (178, 203)").
   std::vector<std::string> notes;
