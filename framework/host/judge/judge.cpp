@@ -61,12 +61,16 @@ void check_via_course(const Route& route, const Request& request, const Goal& vi
   Request to = request;
   to.goal = via;
   double min_angle = kInfinity;
-  for (std::size_t i = std::max<std::size_t>(first, 1);
-       i < route.size() && via.reached_at(route[i]); ++i) {
-    const Vec3 arrival = route.leg(i - 1).rate(1);
-    const auto course = to.arrival_course(route[i]);
-    const double off = course ? turn_angle_horizontal(arrival, *course) : 0;
-    min_angle = std::min(min_angle, off * arrival.norm() > kLengthTolerance ? off : 0);
+  std::optional<Approach> before = request.before_start(route.front());
+  for (std::size_t i = 1; i < route.size() && (i <= first || via.reached_at(route[i])); ++i) {
+    before = onward(before, route.leg(i - 1));
+    if (i >= first) {
+      const Vec3 arrival = before ? before->heading_at(route[i]) : Vec3::Zero();
+      const auto course = to.arrival_course(route[i]);
+      const double off = course ? turn_angle_horizontal(arrival, *course) : 0;
+      min_angle =
+          std::min(min_angle, off * std::max(1.0, arrival.norm()) > kLengthTolerance ? off : 0);
+    }
   }
   if (std::isfinite(min_angle) && min_angle > kAngleTolerance) {
     found.push_back({"via_heading", first, degrees(min_angle), 0,

@@ -41,9 +41,9 @@ std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
 /// The vehicle's velocity at the end of a route.
 Vec3 velocity_at_end(const Route& route, double speed) {
   for (std::size_t i = route.leg_count(); i-- > 0;) {
-    const Vec3 rate = route.leg(i).rate(1);
-    if (rate.squaredNorm() > 0) {
-      return rate.normalized() * speed;
+    const Vec3 way = route.leg(i).track(1);
+    if (way.norm() >= kLengthTolerance) {
+      return way.normalized() * speed;
     }
   }
   return Vec3::Zero();

@@ -79,8 +79,8 @@ std::vector<std::optional<double>> turns_of(const Route& route, bool turns_on_th
   std::optional<Approach> before;
   for (std::size_t i = 1; i + 1 < route.size(); ++i) {
     before = onward(before, route.leg(i - 1));
-    const Vec3 next = route[i] + route.leg(i).rate(0);
-    turns[i] = degrees(horizontal_turn(*before, route[i], next, turns_on_the_spot));
+    const Vec3 next = route[i] + route.leg(i).track(0);
+    turns[i] = before ? degrees(horizontal_turn(*before, route[i], next, turns_on_the_spot)) : 0;
   }
   return turns;
 }

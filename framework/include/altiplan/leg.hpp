@@ -45,6 +45,13 @@ struct ALTIPLAN_API Leg {
   /// Derivative of the position by t: the displacement over the ground at that rate for a whole
   /// leg; its horizontal part has the direction of the track.
   Vec3 rate(double t) const;
+  /// The same direction with a heading even where a turn stands still in the wind; the displacement
+  /// of a leg without one.
+  Vec3 track(double t) const;
+  /// False of a leg so short that what it says of a heading is rounding, or may be anything.
+  bool has_heading() const {
+    return turns() ? air_length() >= kLengthTolerance : altiplan::has_heading(to - from);
+  }
   /// Length of the path over the ground, metres.
   double length() const;
   /// Length of the horizontal path through the air, metres (of a straight leg: over the ground).

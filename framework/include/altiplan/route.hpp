@@ -93,15 +93,9 @@ inline Approach onward(const std::optional<Approach>& before, const Vec3& here) 
   return {here, before ? before->heading_at(here) : Vec3::Zero()};
 }
 
-/// The same after a leg of any kind.
-inline Approach onward(const std::optional<Approach>& before, const Leg& leg) {
-  if (!leg.turns()) {
-    return onward(before, leg.from);
-  }
-  Approach approach(leg.to - leg.rate(1));
-  approach.turning = true;
-  return approach;
-}
+/// The same after a leg of any kind. A repeated point, and a turn shorter than kLengthTolerance,
+/// leave the approach what it was: no number of them hides a corner.
+ALTIPLAN_API std::optional<Approach> onward(std::optional<Approach> before, const Leg& leg);
 
 /// Horizontal turn at `here` toward `next`, in [0, pi]; 0 where there is no heading to turn from or
 /// to. A vehicle that turns on the spot does so on legs without a heading.

@@ -28,6 +28,10 @@ struct ALTIPLAN_API Wind {
 ALTIPLAN_API std::optional<double> ground_speed(const Vec3& course, double airspeed,
                                                 const Vec3& wind);
 
+/// Heading through the air, radians, that holds that course; none if it cannot.
+ALTIPLAN_API std::optional<double> heading_on(const Vec3& course, double airspeed,
+                                              const Vec3& wind);
+
 /// Seconds of a straight leg at an airspeed, which is horizontal; infinite if the wind does not let
 /// the vehicle hold the course. A leg without a heading takes the time of its length.
 ALTIPLAN_API double flight_time(const Vec3& from, const Vec3& to, double airspeed,

@@ -23,9 +23,7 @@ void each_sweep(const Route& route, const Request& request, const Visit& visit) 
     for (Sweep& sweep : body_sweeps(before, leg, request)) {
       visit(leg, std::move(sweep));
     }
-    if (leg.turns() || leg.to != leg.from) {
-      before = onward(before, leg);
-    }
+    before = onward(before, leg);
   }
 }
 

@@ -68,7 +68,7 @@ Polyline chords_of(const Route& route, std::vector<std::size_t>& leg_of) {
 void check_course(const Vec3& course, const Vec3& wanted, const char* rule, std::size_t at,
                   const char* what, std::vector<Violation>& found) {
   const double off = turn_angle_horizontal(course, wanted);
-  if (off > kAngleTolerance && off * course.norm() > kLengthTolerance) {
+  if (off > kAngleTolerance && off * std::max(1.0, course.norm()) > kLengthTolerance) {
     found.push_back(beyond(rule, at, degrees(off), 0, "deg", what, false));
   }
 }
@@ -88,10 +88,16 @@ void check_ends(const Route& route, const Request& request, std::vector<Violatio
                      "the route begins " + distance_text(off) + " m from the " +
                          (start.loiter ? "loiter circle of the start" : "start"),
                      "", "m"});
-  } else if (start.loiter && route.leg_count() > 0) {
-    check_course(route.leg(0).rate(0), start.loiter->course(start.position, route.front()),
-                 "start_heading", 0, "the angle between the first leg and the loiter circle",
-                 found);
+  } else if (start.loiter) {
+    std::size_t first = 0;
+    while (first < route.leg_count() && !route.leg(first).has_heading()) {
+      ++first;
+    }
+    if (first < route.leg_count()) {
+      check_course(route.leg(first).track(0), start.loiter->course(start.position, route.front()),
+                   "start_heading", first, "the angle between the first leg and the loiter circle",
+                   found);
+    }
   }
   if (!goal.reached_at(route.back())) {
     const double off = goal.loiter ? off_circle(*goal.loiter, goal.position, route.back())
@@ -126,9 +132,7 @@ CheckResult check(const Route& route, const Request& request) {
     for (Violation& violation : leg_violations(before, leg, request, i)) {
       found.push_back(std::move(violation));
     }
-    if (leg.turns() || leg.to != leg.from) {  // a repeated point hides no turn
-      before = onward(before, leg);
-    }
+    before = onward(before, leg);
   }
   if (const auto course = request.arrival_course(route.back()); course && before) {
     const Vec3 arrival = before->heading_at(route.back());

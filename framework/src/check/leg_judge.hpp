@@ -36,7 +36,7 @@ class LegJudge {
       : LegJudge(before, leg.from, leg.to, request, at, report) {
     if (leg.turns()) {
       turn_ = &leg;
-      leg_ = leg.rate(0);
+      leg_ = leg.track(0);
     }
   }
 
@@ -189,8 +189,8 @@ class LegJudge {
   }
 
   bool keeps_bend() const {
-    if (!before_) {
-      return true;
+    if (!before_ || (turn_ != nullptr && leg_.norm() < kLengthTolerance)) {
+      return true;  // of no length: the next leg is judged by the approach to it (onward)
     }
     const bool on_the_spot = request_.vehicle.turns_on_the_spot;
     // A turn begins along its tangent.
@@ -207,11 +207,12 @@ class LegJudge {
   }
 
   /// Beside a turn there is no leg left to fillet a corner: it must join its neighbours
-  /// tangentially.
+  /// tangentially, up to the rounding of a straight leg's ends. Legs below a metre count as one:
+  /// many of them, each within the tolerance, would make a corner.
   bool keeps_tangent() const {
     const double corner =
         horizontal_turn(*before_, a_, a_ + leg_, request_.vehicle.turns_on_the_spot);
-    const double reach = std::min((a_ - before_->from).norm(), leg_.norm());
+    const double reach = std::max(1.0, std::min((a_ - before_->from).norm(), leg_.norm()));
     return corner <= kAngleTolerance || corner * reach <= kLengthTolerance || report_([&] {
              return Violation{"turn_radius",
                               at_,

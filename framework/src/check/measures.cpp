@@ -114,7 +114,7 @@ void measure_turns(const Route& route, const Request& request, Measures& m) {
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
     if (before) {
-      const Vec3 onto = leg.from + leg.rate(0);
+      const Vec3 onto = leg.from + leg.track(0);
       const double angle = horizontal_turn(*before, leg.from, onto, on_the_spot);
       turn = std::max(turn, angle);
       smoothness += angle + std::abs(slope_of(leg) - slope_of(route.leg(i - 1)));

@@ -54,6 +54,17 @@ Vec3 Leg::rate(double t) const {
   return air_length() * unit_heading(heading + t * turn) + drift + climb;
 }
 
+Vec3 Leg::track(double t) const {
+  const Vec3 way = has_heading() ? rate(t) : Vec3(to - from);
+  if (!has_heading() || altiplan::has_heading(way)) {
+    return way;
+  }
+  const double flat = way.head<2>().norm();
+  // Where it stands still it comes from the side and leaves to the side.
+  return flat > 0 ? Vec3(way / flat)
+                  : unit_heading(heading + t * turn + std::copysign(kPi / 2, (0.5 - t) * turn));
+}
+
 double Leg::length() const {
   if (kind() != Kind::trochoid) {
     return turns() ? std::hypot(air_length(), to.z() - from.z()) : (to - from).norm();

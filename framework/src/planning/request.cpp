@@ -49,14 +49,7 @@ std::optional<Vec3> Request::arrival_course(const Vec3& last) const {
 }
 
 std::optional<double> Request::heading_on(const Vec3& course, double z) const {
-  const Vec3 along = Vec3(course.x(), course.y(), 0).normalized();
-  const Vec3 air = wind.at(z);
-  const std::optional<double> speed = ground_speed(along, air_speed(), air);
-  if (!speed) {
-    return std::nullopt;
-  }
-  const Vec3 through_air = *speed * along - air;
-  return std::atan2(through_air.y(), through_air.x());
+  return altiplan::heading_on(course, air_speed(), wind.at(z));
 }
 
 std::vector<Pose> Request::start_poses(int count) const {

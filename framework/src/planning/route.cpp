@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace altiplan {
+namespace {
+Vec3 turned(const Vec3& v, double angle) {
+  return {v.x() * std::cos(angle) - v.y() * std::sin(angle),
+          v.x() * std::sin(angle) + v.y() * std::cos(angle), v.z()};
+}
+}  // namespace
 
 void Route::push_back(const Vec3& to) {
   if (!turns_.empty()) {
@@ -98,6 +104,27 @@ Route without_repeats(const Route& route) {
     }
   }
   return out.empty() ? Route{route.front()} : out;
+}
+
+std::optional<Approach> onward(std::optional<Approach> before, const Leg& leg) {
+  const bool is_nothing =
+      leg.turns() ? std::hypot(leg.air_length(), leg.to.z() - leg.from.z()) < kLengthTolerance
+                  : leg.to == leg.from;
+  if (is_nothing) {
+    if (before) {
+      // The piece that a cut leaves of a turn of a metre or more turns no further than this.
+      const double turn = std::abs(leg.turn) <= kLengthTolerance ? leg.turn : 0;
+      before->from = leg.to - turned(leg.from - before->from, turn);
+      before->heading = turned(before->heading, turn);
+    }
+    return before;
+  }
+  if (!leg.turns() || !leg.has_heading()) {
+    return onward(before, leg.from);
+  }
+  Approach approach(leg.to - leg.track(1));
+  approach.turning = true;
+  return approach;
 }
 
 double horizontal_turn(const Approach& before, const Vec3& here, const Vec3& next,

@@ -38,6 +38,16 @@ std::optional<double> ground_speed(const Vec3& course, double airspeed, const Ve
   return speed > 0 ? std::optional(speed) : std::nullopt;
 }
 
+std::optional<double> heading_on(const Vec3& course, double airspeed, const Vec3& wind) {
+  const Vec3 along = Vec3(course.x(), course.y(), 0).normalized();
+  const std::optional<double> speed = ground_speed(along, airspeed, wind);
+  if (!speed) {
+    return std::nullopt;
+  }
+  const Vec3 through_air = *speed * along - wind;
+  return std::atan2(through_air.y(), through_air.x());
+}
+
 double flight_time(const Vec3& from, const Vec3& to, double airspeed, const Wind& wind) {
   const Vec3 leg = to - from;
   if (!has_heading(leg)) {
