@@ -147,17 +147,31 @@ class LegJudge {
            });
   }
 
-  /// Climb angle through the air, which moves with the wind.
+  /// Climb angle through the air, which moves with the wind: the greatest in any of its layers.
   double climb_of_leg() const {
-    if (turn_ == nullptr && request_.wind.is_calm()) {
+    if (turn_ != nullptr) {
+      return std::atan2(std::abs(b_.z() - a_.z()), turn_->air_length());
+    }
+    if (request_.wind.is_calm() || !has_heading(leg_)) {
       return climb_angle(leg_);
     }
-    const double run =
-        turn_ != nullptr ? turn_->air_length()
-        : has_heading(leg_)
-            ? flight_time(a_, b_, request_.air_speed(), request_.wind) * request_.air_speed()
-            : 0;
-    return std::atan2(std::abs(b_.z() - a_.z()), run);
+    double climb = climb_through_air(a_, b_);
+    Vec3 from = a_;
+    std::vector<double> ends = request_.wind.crossings(a_.z(), b_.z());
+    ends.push_back(1);
+    for (const double end : ends) {
+      const Vec3 to = a_ + end * leg_;
+      if (std::abs(to.z() - from.z()) > kLengthTolerance) {  // a leg may end on a border
+        climb = std::max(climb, climb_through_air(from, to));
+      }
+      from = to;
+    }
+    return climb;
+  }
+  double climb_through_air(const Vec3& from, const Vec3& to) const {
+    const double speed = request_.air_speed();
+    return std::atan2(std::abs(to.z() - from.z()),
+                      flight_time(from, to, speed, request_.wind) * speed);
   }
 
   bool keeps_course() const {
