@@ -92,6 +92,59 @@ inline void expect_valid_routes_among_towers(const std::string& planner, const s
   EXPECT_EQ(turning, solved);
 }
 
+/// The same with a border of layers of wind or two between the ends.
+inline Request in_layers(RandomStream& random, int n) {
+  Request request = among_towers(random, 0);
+  request.start.position.z() = random.uniform(50, 120);
+  request.goal.position.z() = random.uniform(280, 350);
+  const auto wind = [&] {
+    return Vec3(random.uniform(1, 9) * unit_heading(random.uniform(-3, 3)));
+  };
+  request.wind.layers = {{n % 3 == 0 ? 200 : -kInfinity, wind()}, {250, wind()}};
+  if (n % 2 == 1) {
+    std::swap(request.start.position.z(), request.goal.position.z());
+  }
+  request.start.velocity =
+      request.ground_velocity({request.start.position, random.uniform(-kPi, kPi)});
+  return request;
+}
+
+/// The greatest corner over the ground between legs that are no rounding; of such none is expected.
+inline double greatest_corner(const Route& route) {
+  double greatest = 0;
+  std::optional<Vec3> arrives;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    EXPECT_GT(leg.length(), 5e-7) << "leg " << i;
+    if (leg.length() > 1e-6) {
+      greatest = arrives ? std::max(greatest, turn_angle_horizontal(*arrives, leg.rate(0))) : 0;
+      arrives = leg.rate(1);
+    }
+  }
+  return greatest;
+}
+
+/// No route has a corner where layers of wind meet, and at least that many of 24 are found.
+inline void expect_no_corners_in_layers(const std::string& planner, const std::string& yaml,
+                                        int at_least, std::uint64_t iterations) {
+  RandomStream random(17);
+  int solved = 0;
+  for (int n = 0; n < 24; ++n) {
+    Request request = in_layers(random, n);
+    request.budget.max_iterations = iterations;
+    const PlanResult result = make_planner(planner, yaml)->plan(request);
+    if (result.status == PlanStatus::solved) {
+      ++solved;
+      EXPECT_LT(greatest_corner(result.route), 1e-6) << n;
+      const CheckResult judged = check(result.route, request);
+      EXPECT_TRUE(judged.ok()) << n << ": " << judged.violations.front().message;
+      const Route shorter = make_smoother("shortcut")->smooth(result.route, request).route;
+      EXPECT_LT(greatest_corner(shorter), 1e-6) << n;
+    }
+  }
+  EXPECT_GE(solved, at_least);
+}
+
 /// The routes among towers between loiter circles are valid, and that share of them is found.
 inline void expect_loiter_circles_left_and_joined(const std::string& planner, double share,
                                                   std::uint64_t iterations) {

@@ -17,6 +17,10 @@ TEST(HybridAstar, RoutesAmongTowersAreValidInCalmAndWind) {
   testing::expect_valid_routes_among_towers("hybrid_astar", "{}", 0.8, 20'000);
 }
 
+TEST(HybridAstar, JoinsLegsTangentiallyInLayersOfWind) {
+  testing::expect_no_corners_in_layers("hybrid_astar", "{}", 8, 20'000);
+}
+
 TEST(HybridAstar, LeavesAndJoinsLoiterCirclesTangentially) {
   testing::expect_loiter_circles_left_and_joined("hybrid_astar", 0.8, 20'000);
 }

@@ -99,7 +99,7 @@ class Search {
       for (const double turn : turns()) {
         for (const double gradient : gradients_) {
           const Leg leg = steering_.piece_to(to, length_, turn, gradient);
-          const Pose from{leg.from, to.heading - turn};
+          const Pose from = steering_.pose_on(leg, 0, to.heading - turn);
           if (request_.volume.contains(leg.from) && known.find(key(from)) == Cells::kNone &&
               leg_ok(std::nullopt, leg, request_)) {
             known.exchange(key(from), Cells::Node(i));
@@ -175,7 +175,7 @@ class Search {
     next.gradient = gradient;
     next.parent = at;
     const Leg leg = leg_of(node, next);
-    next.pose = {leg.to, node.pose.heading + turn};
+    next.pose = steering_.pose_on(leg, 1, node.pose.heading + turn);
     next.g = node.g + length_;
     const Index known = closed_.find(key(next.pose));
     if ((known != kNone && next.g >= nodes_[known].g) || !request_.volume.contains(leg.to)) {

@@ -12,6 +12,10 @@ TEST(InformedRrtStarWing, InTheOpenItIsTheDubinsPath) {
 TEST(InformedRrtStarWing, RoutesAmongTowersAreValidInCalmAndWind) {
   testing::expect_valid_routes_among_towers(kPlanner, "{}", 0.8, 3'000);
 }
+
+TEST(InformedRrtStarWing, JoinsLegsTangentiallyInLayersOfWind) {
+  testing::expect_no_corners_in_layers(kPlanner, "{}", 8, 3'000);
+}
 TEST(InformedRrtStarWing, MoreIterationsNeverGiveALongerRoute) {
   testing::expect_no_longer_with_more_iterations(kPlanner, {1'000, 2'000, 4'000});
 }

@@ -74,7 +74,7 @@ class PoseGrowth {
     if (const auto path = paths_.steering().path(from, toward); path && path->length > 0) {
       const Pose next = path->length <= settings_.step
                             ? toward
-                            : kit::Steering::pose_at(from, *path, settings_.step);
+                            : paths_.steering().pose_at(from, *path, settings_.step);
       if (const auto arrival = paths_.arrival(arrivals_[std::size_t(near)].second, from, next)) {
         close(add(next, near, arrival->approach));
         return;

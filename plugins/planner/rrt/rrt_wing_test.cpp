@@ -12,6 +12,10 @@ TEST(RrtWing, RoutesAmongTowersAreValidInCalmAndWind) {
   testing::expect_valid_routes_among_towers("rrt", "{}", 0.8, 20'000);
 }
 
+TEST(RrtWing, JoinsLegsTangentiallyInLayersOfWind) {
+  testing::expect_no_corners_in_layers("rrt", "{}", 8, 20'000);
+}
+
 TEST(RrtWing, LeavesAndJoinsLoiterCirclesTangentially) {
   testing::expect_loiter_circles_left_and_joined("rrt", 0.8, 20'000);
 }

@@ -77,8 +77,8 @@ class PoseEdges {
     if (path->length <= settings_.range) {
       return q;
     }
-    return side == kStart ? kit::Steering::pose_at(at, *path, settings_.range)
-                          : kit::Steering::pose_at(q, *path, path->length - settings_.range);
+    return side == kStart ? steering().pose_at(at, *path, settings_.range)
+                          : steering().pose_at(q, *path, path->length - settings_.range);
   }
   static bool same(const State& a, const State& b) { return kit::are_same(a, b); }
 

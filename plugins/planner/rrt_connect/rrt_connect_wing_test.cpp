@@ -14,6 +14,10 @@ TEST(RrtConnectWing, RoutesAmongTowersAreValidInCalmAndWind) {
   testing::expect_valid_routes_among_towers("rrt_connect", "{}", 0.9, 8'000);
 }
 
+TEST(RrtConnectWing, JoinsLegsTangentiallyInLayersOfWind) {
+  testing::expect_no_corners_in_layers("rrt_connect", "{}", 8, 8'000);
+}
+
 TEST(RrtConnectWing, ReportsAWindThatItCannotFlyIn) {
   testing::expect_a_wind_too_strong_reported("rrt_connect");
 }

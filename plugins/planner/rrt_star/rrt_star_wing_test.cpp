@@ -12,6 +12,10 @@ TEST(RrtStarWing, InTheOpenItIsTheDubinsPath) {
 TEST(RrtStarWing, RoutesAmongTowersAreValidInCalmAndWind) {
   testing::expect_valid_routes_among_towers(kPlanner, "{}", 0.8, 5'000);
 }
+
+TEST(RrtStarWing, JoinsLegsTangentiallyInLayersOfWind) {
+  testing::expect_no_corners_in_layers(kPlanner, "{}", 8, 5'000);
+}
 TEST(RrtStarWing, MoreIterationsNeverGiveALongerRoute) {
   testing::expect_no_longer_with_more_iterations(kPlanner, {1'000, 4'000, 16'000});
 }

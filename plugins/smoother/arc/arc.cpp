@@ -63,6 +63,9 @@ std::optional<Fillet> fillet_of(const Vec3& before, const Vec3& corner, const Ve
     return std::nullopt;
   }
   const double turn = std::remainder(*to - *from, 2 * kPi);
+  if (radius * std::abs(turn) < kLengthTolerance) {
+    return std::nullopt;  // a leg of no length
+  }
   const Vec3 drift = radius * std::abs(turn) / request.air_speed() * request.wind.at(corner.z());
   const Vec3 across = Leg::turning({Vec3::Zero(), *from}, turn, radius, 0, drift).to;
   Fillet fillet{{}, cross(across, v) / cross(u, v), cross(u, across) / cross(u, v)};

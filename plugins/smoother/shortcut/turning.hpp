@@ -62,11 +62,12 @@ class TurnShortening {
     // The path, what is left of the two legs that are cut, and the leg whose approach changes.
     std::vector<Leg> shorter(pi_.begin(), pi_.begin() + std::ptrdiff_t(a.leg));
     const std::size_t first = shorter.size();
-    if (a.part > 0) {
+    const auto is_leg = [](double metres) { return metres > kLengthTolerance / 10; };
+    if (is_leg(a.from_start - from_start_[a.leg])) {
       shorter.push_back(pi_[a.leg].piece(0, a.part));
     }
     shorter.insert(shorter.end(), path->legs.begin(), path->legs.end());
-    if (b.part < 1) {
+    if (is_leg(from_start_[b.leg + 1] - b.from_start)) {
       shorter.push_back(pi_[b.leg].piece(b.part, 1));
     }
     const std::size_t last = shorter.size();
@@ -134,10 +135,10 @@ class TurnShortening {
   /// The pose of the vehicle there; none on a leg without a heading, or that it cannot fly.
   std::optional<Pose> pose(const Place& place) const {
     const Leg& leg = pi_[place.leg];
-    const Vec3 at = leg.at(place.part);
     if (leg.turns()) {
-      return Pose{at, leg.heading + place.part * leg.turn};
+      return steering_.pose_on(leg, place.part, leg.heading + place.part * leg.turn);
     }
+    const Vec3 at = leg.at(place.part);
     const Vec3 course = leg.to - leg.from;
     const auto heading = has_heading(course) ? request_.heading_on(course, at.z()) : std::nullopt;
     return heading ? std::optional(Pose{at, *heading}) : std::nullopt;

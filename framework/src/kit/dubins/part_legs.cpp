@@ -4,6 +4,9 @@
 namespace altiplan::kit {
 namespace {
 
+/// Shorter parts, metres, have no leg: they are rounding, and as straight legs noise.
+constexpr double kNoLength = kLengthTolerance / 2;
+
 /// Makes the legs end at `to`. Rounding takes them past it, by 1e-4 m after 500 km: the last
 /// straight leg takes that up, as a turn that ends elsewhere than its circle would be no turn.
 void end_at(std::vector<Leg>& legs, const Vec3& to) {
@@ -32,7 +35,8 @@ std::vector<Leg> part_legs(std::span<const PathPart> parts, double radius, const
   std::vector<Leg> legs;
   Pose at = from;
   for (const PathPart& part : parts) {
-    if (part.size == 0) {
+    // A turn that bends by more would leave a corner.
+    if (radius * part.size < kNoLength && (part.sense == 0 || part.size <= kAngleTolerance)) {
       continue;
     }
     const double climb = (to.z() - from.position.z()) * (part.size / total);
@@ -46,7 +50,7 @@ std::vector<Leg> part_legs(std::span<const PathPart> parts, double radius, const
     }
     at.position = legs.back().to;
   }
-  if (legs.empty() && to != from.position) {
+  if (legs.empty() && (to - from.position).norm() >= kNoLength) {
     legs.push_back(Leg::straight(from.position, to));
   }
   if (!legs.empty()) {

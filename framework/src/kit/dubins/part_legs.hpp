@@ -11,7 +11,7 @@ namespace altiplan::kit {
 
 struct PathPart {
   int sense;    ///< 1 left, -1 right, 0 straight
-  double size;  ///< radians, of a straight part radii; parts without a size have no leg
+  double size;  ///< radians, of a straight part radii; parts that rounding leaves have no leg
 };
 
 /// `wind` is in units of the airspeed. The height changes linearly in time, which is

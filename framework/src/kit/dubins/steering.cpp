@@ -64,6 +64,7 @@ Steering::Steering(const Request& request, double radius)
   limits_.radius = radius;
   limits_.climb = request.level_m ? 0 : std::min(limits.max_climb, kSteepest);
   limits_.sink = request.level_m ? 0 : std::min(limits.max_descent(), kSteepest);
+  is_layered_ = !wind_.crossings(request.volume.min.z(), request.volume.max.z()).empty();
   for (std::size_t i = 0; i < wind_.layers.size(); ++i) {
     const bool is_below =
         i + 1 < wind_.layers.size() && wind_.layers[i + 1].above_m < request.volume.min.z();
@@ -71,6 +72,23 @@ Steering::Steering(const Request& request, double radius)
       strongest_ = std::max(strongest_, wind_.layers[i].velocity.norm());
     }
   }
+}
+
+std::optional<Pose> Steering::in_wind(const Pose& pose, const Vec3& wind) const {
+  const Vec3 there = wind_.at(pose.position.z());
+  if (there == wind) {
+    return pose;
+  }
+  const auto heading = heading_on(speed_ * unit_heading(pose.heading) + there, speed_, wind);
+  return heading ? std::optional(Pose{pose.position, *heading}) : std::nullopt;
+}
+
+Pose Steering::pose_on(const Leg& leg, double share, double heading) const {
+  const Vec3 at = leg.at(share);
+  if (is_layered_ && leg.has_heading()) {
+    heading = heading_on(leg.track(share), speed_, wind_.at(at.z())).value_or(heading);
+  }
+  return {at, heading};
 }
 
 Leg Steering::piece(const Pose& from, double length, double turn, double gradient) const {
@@ -96,32 +114,47 @@ Leg Steering::piece_to(const Pose& to, double length, double turn, double gradie
 
 std::optional<PosePath> Steering::path(const Pose& from, const Pose& to) const {
   const Vec3 wind = wind_between(from, to);
+  const auto a = in_wind(from, wind);
+  const auto b = in_wind(to, wind);
+  if (!a || !b) {
+    return std::nullopt;
+  }
   if (wind.isZero(0)) {
-    const auto path = airplane_path(from, to, limits_);
-    return path ? std::optional(PosePath{path->legs(from, to.position), path->length()})
+    const auto path = airplane_path(*a, *b, limits_);
+    return path ? std::optional(PosePath{path->legs(*a, to.position), path->length()})
                 : std::nullopt;
   }
-  const auto path = wind_path(from, to, limits_, {speed_, wind});
-  return path ? std::optional(PosePath{path->legs(from, to.position), path->through_air.length()})
+  const auto path = wind_path(*a, *b, limits_, {speed_, wind});
+  return path ? std::optional(PosePath{path->legs(*a, to.position), path->through_air.length()})
               : std::nullopt;
 }
 
 double Steering::length(const Pose& from, const Pose& to, double at_most) const {
   const Vec3 wind = wind_between(from, to);
-  if (wind.isZero(0)) {
-    return airplane_length(from, to, limits_, at_most);
+  const auto a = in_wind(from, wind);
+  const auto b = in_wind(to, wind);
+  if (!a || !b) {
+    return kInfinity;
   }
-  const auto path = wind_path(from, to, limits_, {speed_, wind}, at_most);
+  if (wind.isZero(0)) {
+    return airplane_length(*a, *b, limits_, at_most);
+  }
+  const auto path = wind_path(*a, *b, limits_, {speed_, wind}, at_most);
   return path ? path->through_air.length() : kInfinity;
 }
 
 double Steering::min_length(const Pose& from, const Pose& to) const {
   const Vec3 apart = to.position - from.position;
-  const double straight = is_calm() ? apart.head<2>().norm()
-                          : is_too_windy()
-                              ? 0
-                              : straight_through_air(apart, wind_between(from, to) / speed_);
-  const double turn = std::abs(std::remainder(to.heading - from.heading, 2 * kPi));
+  const Vec3 wind = wind_between(from, to);
+  const double straight = is_calm()        ? apart.head<2>().norm()
+                          : is_too_windy() ? 0
+                                           : straight_through_air(apart, wind / speed_);
+  const auto a = in_wind(from, wind);
+  const auto b = in_wind(to, wind);
+  if (!a || !b) {
+    return kInfinity;
+  }
+  const double turn = std::abs(std::remainder(b->heading - a->heading, 2 * kPi));
   return std::max({straight, limits_.radius * turn, limits_.min_length(apart.z())});
 }
 
@@ -136,7 +169,7 @@ double Steering::min_length_to_goal(const Pose& from, double over_ground) const 
              : length;
 }
 
-Pose Steering::pose_at(const Pose& from, const PosePath& path, double length) {
+Pose Steering::pose_at(const Pose& from, const PosePath& path, double length) const {
   // A path has one straight leg at most, whose length through the air is what the turns leave.
   double straight = path.length;
   for (const Leg& leg : path.legs) {
@@ -147,12 +180,12 @@ Pose Steering::pose_at(const Pose& from, const PosePath& path, double length) {
     const double flown = leg.turns() ? leg.air_length() : straight;
     if (length < flown) {
       const double part = length / flown;
-      return {leg.at(part), heading + part * leg.turn};
+      return pose_on(leg, part, heading + part * leg.turn);
     }
     length -= flown;
     heading += leg.turn;
   }
-  return {path.legs.empty() ? from.position : path.legs.back().to, heading};
+  return path.legs.empty() ? from : pose_on(path.legs.back(), 1, heading);
 }
 
 Route route_of(const std::vector<Leg>& legs, const Vec3& alone, const Request& request) {

@@ -15,7 +15,7 @@ PathRules::PathRules(const Request& request, double turn_radius)
       rules_(request),
       steering_(request, turn_radius),
       looks_back_(request.limits.max_turn_space < kPi || request.judges_pairs() ||
-                  request.wind.layers.size() > 1) {}
+                  steering_.is_layered()) {}
 
 std::vector<Pose> PathRules::starts() const {
   return request_.start_poses(request_.start.loiter ? kLoiterPoses : kRuleHeadings);

@@ -87,7 +87,7 @@ class PoseMotion {
   }
   static double min_route() { return 0; }
   /// True if no route is shorter than the shortest path from any start to any goal.
-  bool ends_are_poses() const { return !ends_anywhere() && request_.wind.layers.size() <= 1; }
+  bool ends_are_poses() const { return !ends_anywhere() && !steering().is_layered(); }
   /// Beyond this, a node is of no use while the best route costs `best`.
   double max_cost(double best) const {
     const double maximum = steering().is_calm() ? request_.limits.max_route_length : kInfinity;
@@ -133,7 +133,7 @@ class PoseMotion {
     }
     const auto path =
         shortest > settings_.range ? steering().path(state(from), toward) : std::nullopt;
-    return path ? std::optional(Steering::pose_at(state(from), *path, settings_.range))
+    return path ? std::optional(steering().pose_at(state(from), *path, settings_.range))
                 : std::nullopt;
   }
 

@@ -26,15 +26,25 @@ class ALTIPLAN_API Steering {
   /// True if the wind can hold the aeroplane in one place.
   bool is_too_windy() const { return strongest_ >= speed_; }
   bool is_calm() const { return strongest_ == 0; }
+  /// True if the wind is not the same at all heights of the volume.
+  bool is_layered() const { return is_layered_; }
   /// Upper bound of the distance over the ground, in units of the length through the air.
   double ground_per_air() const { return (speed_ + strongest_) / speed_; }
+
+  /// The pose at a share of a leg: in layers of wind with the heading that holds the leg's course
+  /// in the wind there, which need not be that in which the leg was steered. `heading` is the one
+  /// without layers.
+  Pose pose_on(const Leg& leg, double share, double heading) const;
 
   /// A piece of a given length through the air: with a turn (radians, 0: straight) and a gradient.
   Leg piece(const Pose& from, double length, double turn, double gradient) const;
   /// The same that ends in a pose.
   Leg piece_to(const Pose& to, double length, double turn, double gradient) const;
 
-  /// The shortest path through the air to a pose; none if there is none.
+  /// The shortest path through the air to a pose, all in the wind at its mean height: of poses in
+  /// other layers the courses over the ground are kept, as a straight leg keeps its own across a
+  /// border. Turns are not flown there, so that constraints refuse such a path. None if there is
+  /// none.
   std::optional<PosePath> path(const Pose& from, const Pose& to) const;
   /// Its length; infinite if there is none, or if it is more than `at_most`, which takes less time.
   double length(const Pose& from, const Pose& to, double at_most = kInfinity) const;
@@ -45,7 +55,7 @@ class ALTIPLAN_API Steering {
   double min_length_to_goal(const Pose& from, double over_ground) const;
 
   /// The pose on a path from a pose after a length through the air, at most that of the path.
-  static Pose pose_at(const Pose& from, const PosePath& path, double length);
+  Pose pose_at(const Pose& from, const PosePath& path, double length) const;
 
  private:
   /// Of the air between two heights.
@@ -53,9 +63,13 @@ class ALTIPLAN_API Steering {
     return wind_.at((from.position.z() + to.position.z()) / 2);
   }
 
+  /// The pose with its course over the ground in another wind; none if that does not allow it.
+  std::optional<Pose> in_wind(const Pose& pose, const Vec3& wind) const;
+
   AirplaneLimits limits_;
   double speed_;
   double strongest_ = 0;  ///< wind, m/s
+  bool is_layered_ = false;
   const Wind& wind_;
   const Goal& goal_;
 };
