@@ -77,6 +77,9 @@ TEST(LegsJson, AHeadingLeftOutFollowsFromTheChord) {
 TEST(LegsJson, WhatIsNoLegIsRefusedByItsPlace) {
   const std::string arc = R"([{"kind": "straight", "end": [9, 9, 9]}, {"kind": "arc", )";
   const std::string end = R"("end": [1, 2, 3], )";
+  const std::string straight = R"([{"kind": "straight", "end": [9, 9, 9], )";
+  const std::string trochoid =
+      R"([{"kind": "trochoid", "end": [1, 2, 3], "turn_deg": 90, "radius_m": 5, )";
   const struct {
     std::string legs;
     const char* message;
@@ -100,11 +103,26 @@ TEST(LegsJson, WhatIsNoLegIsRefusedByItsPlace) {
        "legs.1.drift_m: expected a list of 2 numbers in metres"},
       {arc + end + R"("turn_deg": 90, "radius_m": 5, "heading_deg": "N"}])",
        "legs.1.heading_deg: expected a number"},
+      {straight + R"("turn_deg": []}])",
+       "legs.0.turn_deg: expected null on a straight leg, found a list"},
+      {straight + R"("radius_m": -1}])", "legs.0.radius_m: expected null on a straight leg"},
+      {straight + R"("heading_deg": 0}])", "legs.0.heading_deg: expected null on a straight leg"},
+      {straight + R"("drift_m": {}}])", "legs.0.drift_m: expected null on a straight leg"},
+      {trochoid + R"("drift_m": [1, 2], "heading_deg": null}])",
+       "legs.0.heading_deg: expected a number, found"},
+      {trochoid + R"("drift_m": null}])",
+       "legs.0.drift_m: expected the drift of a trochoid, which is not 0"},
+      {trochoid + R"("drift_m": [0, 0]}])", "legs.0.drift_m: expected the drift of a trochoid"},
+      {arc + end + R"("turn_deg": 90, "radius_m": 5, "drift_m": [1, 2]}])",
+       "legs.1.drift_m: expected no drift of an arc"},
   };
   for (const auto& [legs, message] : cases) {
     EXPECT_HAS(refusal(legs), message);
   }
   EXPECT_EQ(refusal(arc + end + R"("turn_deg": 36000, "radius_m": 5}])"), "accepted");
+  const std::string nulls = R"("heading_deg": null, "drift_m": null}])";
+  EXPECT_EQ(refusal(arc + end + R"("turn_deg": 90, "radius_m": 5, )" + nulls), "accepted");
+  EXPECT_EQ(refusal(straight + R"("turn_deg": null, "radius_m": null, )" + nulls), "accepted");
 }
 }  // namespace
 }  // namespace altiplan::host::legs_json_test

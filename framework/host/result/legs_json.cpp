@@ -57,6 +57,12 @@ Leg leg_of(const Vec3& from, const Json& json, const std::string& place) {
   Leg leg = Leg::straight(from, vector_of(json, "end", 3, place));
   const Json kind = json.value("kind", Json());
   if (kind == name(Leg::Kind::straight)) {
+    for (const char* key : {"turn_deg", "radius_m", "heading_deg", "drift_m"}) {
+      if (is_given(json, key)) {
+        throw Error(place + "." + key + ": expected null on a straight leg, found " +
+                    found_text(json[key]));
+      }
+    }
     return leg;
   }
   if (kind != name(Leg::Kind::arc) && kind != name(Leg::Kind::trochoid)) {
@@ -75,7 +81,13 @@ Leg leg_of(const Vec3& from, const Json& json, const std::string& place) {
   if (is_given(json, "drift_m")) {
     leg.drift = vector_of(json, "drift_m", 2, place);
   }
-  if (is_given(json, "heading_deg")) {
+  const bool is_trochoid = kind == name(Leg::Kind::trochoid);
+  if (is_trochoid != (leg.kind() == Leg::Kind::trochoid)) {
+    throw Error(place + ".drift_m: expected " +
+                (is_trochoid ? "the drift of a trochoid, which is not 0" : "no drift of an arc") +
+                ", found " + (json.contains("drift_m") ? found_text(json["drift_m"]) : "nothing"));
+  }
+  if (is_given(json, "heading_deg") || (is_trochoid && json.contains("heading_deg"))) {
     leg.heading = radians(90 - number_of(json, "heading_deg", place));
   } else {  // half a turn before the direction of the chord
     const Vec3 chord = leg.to - leg.from - leg.drift;
