@@ -29,6 +29,7 @@ SPACE = ("astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta
          "informed_rrt_star", "apf", "ompl")
 LEVEL = ("anya", "jps", "ant_colony", "improved_ant_colony", "velocity_field", "astar", "theta_star",
          "rrt_star", "dstar_lite", "bidirectional_astar")
+WING = ("rrt", "rrt_connect", "rrt_star", "informed_rrt_star", "hybrid_astar")
 SMOOTHERS = ("prune", "shortcut", "bspline", "hermite", "trim", "waypoint_reduction")
 OF_CELLS = {"anya", "astar", "bidirectional_astar", "dstar_lite", "theta_star", "lazy_theta_star",
             "jps", "stratified_theta", "spatial_slicing", "ant_colony", "improved_ant_colony"}
@@ -63,6 +64,8 @@ class Case:
 
     def constraints(self):
         w, made, level = self.world, [], self.world.kind == "level"
+        if w.kind == "wing":  # any corner is one too many
+            return [{"turn_angle": {"max_deg": 0.5}}] if self.chance(0.5) else []
         if self.chance(0.4):
             made.append({"turn_angle": {"max_deg": float(self.rng.choice([30, 50, 95]))}})
         if self.chance(0.15):
@@ -88,7 +91,7 @@ class Case:
 
     def steps(self):
         w = self.world
-        planner = str(self.rng.choice(LEVEL if w.kind == "level" else SPACE))
+        planner = str(self.rng.choice({"level": LEVEL, "wing": WING}.get(w.kind, SPACE)))
         step = {"plan": planner, "id": "route", "with": {}}
         if planner in OF_CELLS:
             cells = int(self.rng.integers(16, 30))
@@ -106,6 +109,8 @@ class Case:
         if planner == "velocity_field":
             step["with"].update(ring_m=round(w.side / 10, 1), min_turn_radius_m=round(w.side / 50, 1))
         steps = [step]
+        if w.kind == "wing":
+            return [dict(step, within_s=5), {"smooth": "shortcut"}]
         for name in self.rng.choice(SMOOTHERS, int(self.rng.integers(1, 4)), replace=False):
             steps.append({"smooth": str(name)})
         if self.chance(0.5):
@@ -182,7 +187,7 @@ class Case:
         if result["flight"]:
             self.counted[f"fly {result['steps'][-1]['plugin']}: {result['flight']['status']}"] += 1
             self.again(result)
-        if result["route"]:
+        if result["route"] and self.world.kind != "wing":
             self.shake(np.array(result["route"]))
             if self.chance(self.options.pages):
                 scene = page.scene(self.options.program, self.result)

@@ -12,6 +12,7 @@ import sys
 
 import numpy as np
 
+import curved
 import flights
 import layers
 import page
@@ -20,9 +21,12 @@ import scenario
 
 AGREES = 1e-5  # m, and degrees
 # The judge allows 1e-6 m and 1e-8 rad. As close to that as a finding's own error either verdict does.
-ALLOWED = {"m": (0.5e-6, 1.5e-6), "deg": (1e-7, 2e-6), "bound": (0, 0)}
+# Chords of a turn are 3e-6 m from it; beside a turn a micrometre in a metre is no corner; a radius of a
+# fillet of legs that hardly turn is no number to speak of.
+ALLOWED = {"m": (0.5e-6, 1.5e-6), "deg": (1e-7, 2e-6), "bound": (0, 0), "curve": (-5e-6, 5e-6),
+           "joint": (1e-7, 1e-4), "fillet": (-1e-3, 1e-3)}
 ONCE = {"start", "goal", "via", "route_length", "volume", "level_flight"}  # held by name, not by place
-UNVALUED = ONCE | {"ground", "collision", "speed"}
+UNVALUED = ONCE | {"ground", "collision", "speed", "wind", "goal_heading"}
 
 
 class Differences(list):
@@ -74,7 +78,7 @@ class Differences(list):
             if not possible:
                 self.say(f"refused for {where(key)}, which the referee finds kept: {values}")
             elif key[0] not in UNVALUED and all(
-                    f.excess is not None and f.unit != "bound" for f in possible):
+                    f.excess is not None and f.unit in ("m", "deg") for f in possible):
                 self.values(key, values, possible)
 
     def values(self, key, values, possible):
@@ -120,6 +124,26 @@ def judge_route(mission, limits, route, check, metrics, what, tolerance=AGREES):
             if told is None or not low - allowed <= told <= high + allowed:
                 found.say(f"min_clearance_m is {told}, by the referee between {low} and {high}")
         found.metrics(metrics, own, skip)
+    return found
+
+
+def judge_curved(mission, limits, route, legs, check, metrics, what):
+    """The same of a route with turns, or in wind."""
+    world, grounds = mission.known()
+    if grounds or limits.turn_space < 180:
+        raise layers.NotJudged("a route with turns over ground, or with a limit on turns in space,")
+    route, legs = np.array(route, float), curved.legs_of(route[0], legs)
+    judge = curved.Judge(mission, limits)
+    judge.ends(route)
+    judge.volume(route)
+    judge.legs(legs, mission.air)
+    judge.places(legs, world)
+    own = curved.measures(mission, legs)
+    judge.below("route_length", 0, own["length_m"], limits.length)
+    found = Differences(what, route)
+    found.verdict(check, judge.findings)
+    if metrics is not None:
+        found.metrics(metrics, own)
     return found
 
 
@@ -170,17 +194,22 @@ def judge_result(result, scene=None):
     mission = scenario.of_result(result, None if scene is None else page.drawn(scene))
     limits = rules.limits_of(mission)
     found, standing = [], None
+
+    def judged(of, what):
+        if mission.is_flown or any(leg["turn_deg"] for leg in of["legs"]):
+            return judge_curved(mission, limits, of["route"], of["legs"], of["check"], of["metrics"],
+                                what)
+        return judge_route(mission, limits, of["route"], of["check"], of["metrics"], what, tolerance)
+
     for step in result["steps"]:
         if len(step["route"]) > 1 and step["check"] is not None:
-            found += judge_route(mission, limits, step["route"], step["check"], step["metrics"],
-                                 f"step '{step['id']}'", tolerance)
+            found += judged(step, f"step '{step['id']}'")
             if step["accepted"] and not step["check"]["ok"]:
                 found.append(f"step '{step['id']}': stands with violations")
         if step["accepted"] and step["verb"] != "fly":
             standing = step["route"]
     if result["route"]:
-        found += judge_route(mission, limits, result["route"], result["check"], result["metrics"],
-                             "result", tolerance)
+        found += judged(result, "result")
         if result["route"] != standing:
             found.append("result: the route is not that of the last step that stands")
     if result["flight"] and len(result["flight"]["track"]) > 1:

@@ -9,6 +9,7 @@ import unittest
 
 import numpy as np
 
+import curved
 import grazing
 import page
 import referee
@@ -157,6 +158,95 @@ class Known(Folder):
         result = self.run_of(scenario, {"steps": [{"plan": "rrt_connect"}]})
         scene = page.scene(PROGRAM, os.path.join(self.folder, "result.json"))
         self.assertEqual(page.profile_differences(scene, result["metrics"]), [])
+
+
+class Curved(Folder):
+    """Routes with turns, and in layers of wind."""
+
+    def hold(self, scenario, route, legs):
+        """The same verdict by both; returns it."""
+        path = worlds.write(self.folder, "route.json", {"altiplan": 1, "route": self.chords(route[0], legs), "legs": legs})
+        file = worlds.write(self.folder, "scenario.yaml", scenario)
+        told = json.loads(self.altiplan("check", "--route", path, "--scenario", file, "--json"))
+        mission = scenarios.of_file(file)
+        self.assertEqual([], referee.judge_curved(mission, rules.limits_of(mission), route, legs,
+                                                  told["check"], told["metrics"], "route"))
+        return told["check"]["ok"]
+
+    def chain(self, *parts):
+        """A route along an arc of 100 m, of straight legs (metres) and turns (degrees, from heading)."""
+        route, legs = [[0.0, 0.0, 100.0]], []
+        for part in parts:
+            at, of = np.array(route[-1]), {"turn_deg": None, "radius_m": None, "heading_deg": None,
+                                           "drift_m": None}
+            if len(part) == 2:
+                heading, length = part
+                h = np.radians(heading)
+                end = at + length * np.array([np.sin(h), np.cos(h), 0])
+            else:
+                heading, turn, radius = part
+                of.update(turn_deg=turn, radius_m=radius, heading_deg=heading, drift_m=[0, 0])
+                h, t = np.radians(90 - heading), np.radians(turn)
+                end = at + np.sign(turn) * radius * np.array(
+                    [np.sin(h + t) - np.sin(h), np.cos(h) - np.cos(h + t), 0])
+            legs.append({"kind": "straight" if len(part) == 2 else "arc", "end": end.tolist(), **of})
+            route.append(end.tolist())
+        return route, legs
+
+    def chords(self, begin, legs):
+        """The points of the file: a turn is written by chords 1e-2 m from it too."""
+        points = [begin]
+        for leg in curved.legs_of(begin, legs):
+            points += leg.points(1e-2)[1:-1].tolist() + [leg.b.tolist()]
+        return points
+
+    def test_turns_of_no_length_hide_no_corner(self):
+        turned = (90, 90, 100)
+        for hidden in ([], [(45, 1e-9, 100)], [(60, 1e-7, 100), (30, -1e-7, 100)], [(45, 1e-6, 100)] * 9,
+                       [(45, 1e-4, 1.0)]):
+            for corner in (0, 90):
+                route, legs = self.chain((90, 200), turned, *hidden, (corner, 200))
+                for limits in ({"turn_angle": {"max_deg": 30}}, {"turn_radius": {"min_m": 100}}):
+                    with self.subTest(hidden=hidden, corner=corner, limits=limits):
+                        is_ok = self.hold(grazing.scenario(route, (), [limits]), route, legs)
+                        lengths = [np.radians(turn) * radius for _, turn, radius in hidden]
+                        kept = corner == 0 and max(lengths, default=0) < 1e-6
+                        self.assertEqual(is_ok, kept)
+
+    def test_a_climb_through_layers(self):
+        way = 100 / np.tan(np.radians(8))
+        for limit, cut in ((8, False), (8, True), (20, False)):
+            route = [[0.0, 0.0, 150.0], [way * 0.75, 0.0, 250.0]]
+            if cut:
+                route.insert(1, [way * 0.375, 0.0, 200.0])
+            scenario = grazing.scenario(
+                route, vehicle={"wing": {"airspeed_mps": 20, "bank_deg": 30, "climb_deg": limit,
+                                         "sink_deg": limit}},
+                wind={"layers": [{"above_m": 0, "from_deg": 270, "speed_mps": 10},
+                                 {"above_m": 200, "from_deg": 90, "speed_mps": 10}]})
+            legs = [{"kind": "straight", "end": p, "turn_deg": None, "radius_m": None,
+                     "heading_deg": None, "drift_m": None} for p in route[1:]]
+            with self.subTest(limit=limit, cut=cut):
+                self.assertEqual(self.hold(scenario, route, legs), limit == 20)
+
+    def test_searches_in_layers_of_wind(self):
+        """A border between the ends: what is found has no corner over the ground."""
+        scenario = {
+            "altiplan": 1, "volume": {"min_m": [0, 0, 0], "max_m": [3000, 2500, 500]},
+            "environment": [{"cylinder": {"at_m": [1500, 1200], "radius_m": 300}},
+                            {"box": {"min_m": [800, 200, 0], "max_m": [1100, 1500, 220]}}],
+            "vehicle": {"radius_m": 3, "wing": {"airspeed_mps": 20, "bank_deg": 30, "climb_deg": 8,
+                                                "sink_deg": 6}},
+            "wind": {"layers": [{"above_m": 0, "from_deg": 250, "speed_mps": 5},
+                                {"above_m": 200, "from_deg": 280, "speed_mps": 8}]},
+            "start": {"at_m": [200, 300, 150], "heading_deg": 200},
+            "goal": {"at_m": [2700, 2200, 250], "heading_deg": 10, "tolerance_m": 20}}
+        for planner in ("rrt", "rrt_connect", "rrt_star", "hybrid_astar"):
+            with self.subTest(planner):
+                result = self.run_of(scenario, {
+                    "constraints": [{"turn_angle": {"max_deg": 0.1}}],
+                    "steps": [{"plan": planner, "within_s": 20}, {"smooth": "shortcut"}]})
+                self.assertEqual(referee.judge_result(result), [])
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ class Limits:
     turn_space: float = 180.0
     radius: float = 0.0
     climb: float = 90.0
+    sink: float = 90.0
     min_leg: float = 0.0
     greatest_leg: float = np.inf
     length: float = np.inf
@@ -28,6 +29,9 @@ class Limits:
 
 def limits_of(mission):
     limits = Limits(clearance=mission.radius)
+    if mission.wing is not None:
+        speed, bank, limits.climb, limits.sink = mission.wing
+        limits.radius = speed**2 / (9.80665 * np.tan(np.radians(bank)))
     for entry in mission.rules:
         (rule, of), = entry.items()
         low, high = (float(of[k]) if k in of else None for k in ("min_m", "max_m"))

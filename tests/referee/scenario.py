@@ -6,6 +6,7 @@ import os
 import numpy as np
 import yaml
 
+import curved
 import layers
 import solids
 
@@ -48,6 +49,20 @@ class Mission:
     speed_near: list
     on_the_spot: bool
     rules: list
+    wing: tuple = None  # airspeed, bank, climb, sink
+    air: curved.Air = None
+    start_course: object = None
+    goal_heading: object = None
+
+    @property
+    def is_flown(self):
+        """A course over the ground is not a heading, nor a gradient a climb."""
+        return self.wing is not None or bool(self.air.layers)
+
+    def course(self, heading, z):
+        """Over the ground, m/s, of a heading clockwise from north."""
+        h = np.radians(heading)
+        return self.air.speed * np.array([np.sin(h), np.cos(h)]) + self.air.wind(z)
 
     def known(self):
         """The solids that are known before take-off, and all ground."""
@@ -70,8 +85,12 @@ def mission(scenario, rules, folder, drawn=None):
                  for key, sign in (("min_m", -1), ("max_m", 1)))
     if "mission" in scenario or "start" not in scenario or "goal" not in scenario:
         raise layers.NotJudged("a mission from a file")
-    goal = scenario["goal"]
-    return Mission(
+    goal, start, wing = scenario["goal"], scenario["start"], vehicle.get("wing")
+    if "loiter" in goal or "loiter" in start:
+        raise layers.NotJudged("a loiter circle")
+    wing = wing and tuple(float(wing[k]) for k in ("airspeed_mps", "bank_deg", "climb_deg", "sink_deg"))
+    speed = layers.end(vehicle, "speed_mps", 15.0)
+    judged = Mission(
         made, moving(scenario, builder), events(scenario, builder),
         builder.point(scenario["start"]), builder.point(goal), float(goal.get("tolerance_m", 0)),
         [(builder.point(v), float(v.get("tolerance_m", 0))) for v in scenario.get("via", [])],
@@ -79,7 +98,22 @@ def mission(scenario, rules, folder, drawn=None):
         layers.end(vehicle, "speed_mps", 15.0),
         [(float(s["within_m"]), float(s["speed_mps"])) for s in vehicle.get("speed_near", [])],
         vehicle.get("turns_on_the_spot", "false") == "true",
-        [*scenario.get("constraints", []), *rules])
+        [*scenario.get("constraints", []), *rules], wing,
+        curved.Air(wind_of(scenario.get("wind", {})), wing[0] if wing else speed))
+    judged.goal_heading = layers.end(goal, "heading_deg", None)
+    if "heading_deg" in start:
+        judged.start_course = judged.course(float(start["heading_deg"]), judged.start[2])
+    return judged
+
+
+def wind_of(of):
+    """[(lower border, velocity)], from the lowest."""
+    made = []
+    for layer in of.get("layers", [of] if of else []):
+        blows, speed = np.radians(float(layer["from_deg"])), float(layer["speed_mps"])
+        made.append((layers.end(layer, "above_m", -np.inf),
+                     -speed * np.array([np.sin(blows), np.cos(blows)])))
+    return made
 
 
 def moving(scenario, builder):

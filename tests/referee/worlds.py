@@ -180,6 +180,20 @@ class World:
             {"hills": {"base_m": 5.0, "cap_m": round(0.22 * self.side, 1), "peaks": peaks}})
         self.some_solids()
 
+    def make_wing(self):
+        """An aeroplane among few solids, in layers of wind as a rule."""
+        speed = self.side / 80
+        self.scenario["vehicle"] = {
+            "radius_m": float(self.rng.choice([0, 2.5])),
+            "wing": {"airspeed_mps": round(speed, 2), "climb_deg": 12, "sink_deg": 10,
+                     "bank_deg": float(np.degrees(np.arctan(speed**2 / 9.80665 / (self.side / 25))))}}
+        borders = np.sort(self.rng.uniform(0.1, 0.9, int(self.rng.integers(0, 4)))) * self.top
+        if len(borders):
+            self.scenario["wind"] = {"layers": [
+                {"above_m": round(float(z), 2), "from_deg": float(self.rng.integers(0, 360)),
+                 "speed_mps": round(float(self.rng.uniform(0, 0.6) * speed), 2)} for z in borders]}
+        self.some_solids()
+
     def some_solids(self):
         for n in range(int(self.rng.integers(0, 6))):
             self.scenario["environment"].append({**self.solid(), "id": f"solid_{n}"})
@@ -210,6 +224,9 @@ class World:
         start, goal = ({"at_m": rounded(p)} for p in free)
         self.scenario["start"] = start
         self.scenario["goal"] = {**goal, "tolerance_m": round(self.side / 100, 1)}
+        for end in ("start", "goal") if self.kind == "wing" else ():
+            if self.rng.random() < 0.7:
+                self.scenario[end]["heading_deg"] = float(self.rng.integers(0, 360))
         return True
 
     def write(self):
@@ -221,4 +238,4 @@ def rounded_all(points, scale):
     return [rounded(np.array(p) * scale) for p in points]
 
 
-KINDS = ("solids", "solids", "zones", "city", "terrain", "hills", "level")
+KINDS = ("solids", "solids", "zones", "city", "terrain", "hills", "level", "wing")
