@@ -46,7 +46,7 @@ class CheckPlanOutputs(PlanCase):
             lines.append(f"{n + 1}\t0\t0\t16\t0\t0\t0\t0\t{lat:.7f}\t{lon:.7f}\t1500\t1")
         (self.folder / "m.waypoints").write_text("\n".join(lines) + "\n")
         self.zones("z.json", self.around(*POINTS[2][:2]), 100000)
-        options = ("--terrain", TERRAIN, "--airspace", "z.json")
+        options = ("--terrain", TERRAIN, "--airspace", "z.json", "--autopilot", "ardupilot", "--vehicle", "copter")
         out, _ = self.call("m.waypoints", *options, "--fix", "f.waypoints", code=1)
         self.assertRegex(out, r"cure: move item 3 \(waypoint\) by [0-9.]+ m (to the|toward) ")
         self.call("f.waypoints", *options, code=0)
@@ -71,7 +71,7 @@ class CheckPlanOutputs(PlanCase):
                       "none given: not judged", "lowest above ground", "36.600000 N, 84.220000 W"):
             self.assertIn(words, page)
         suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
-        self.assertEqual(suite.get("tests"), "5")  # three legs, moves, home
+        self.assertEqual(suite.get("tests"), "3")  # three ways
         failed = [case.get("name") for case in suite.iter("testcase") if len(case)]
         self.assertEqual(len(failed), int(suite.get("failures")))
         self.assertIn("item 2 (waypoint) to item 3 (waypoint)", failed)
@@ -97,10 +97,12 @@ class CheckPlanOutputs(PlanCase):
         low = [[lon, lat, 300] for lon, lat, _ in POINTS]
         out, _ = self.check(low, "--min-agl", "50", "--json", code=1)
         found = json.loads(out)
-        self.assertFalse(found["passed"])
+        self.assertEqual(found["verdict"], "fail")
         self.assertEqual(found["plan"], "mission.plan")
         for violation in found["violations"]:
             self.assertTrue(violation["items"][0].startswith("item "), violation)
+            self.assertIn(violation["item"], (1, 2, 3, 4))
+            self.assertLess(violation["value"], violation["limit"])
             self.assertEqual(len(violation["lonlat"]), 2)
 
     def test_bad_input(self):

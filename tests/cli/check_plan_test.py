@@ -61,8 +61,8 @@ class CheckPlan(PlanCase):
         takeoff = dict(item([0, 0, 1500], 1), command=22)
         landing = dict(item([0, 0, 0], 9), command=21)
         points = [item(point, n + 2) for n, point in enumerate(high)]
-        for at, extra, word in ((POINTS[0], [takeoff, *points], "climb"),
-                                (POINTS[3], [*points, landing], "descent")):
+        for at, extra, word in ((POINTS[0], [takeoff, *points], "climb after take-off"),
+                                (POINTS[3], [*points, landing], "landing")):
             self.zones("z.json", self.around(*at[:2]), 60, "AGL")
             self.write(points)
             options = ("mission.plan", "--terrain", TERRAIN, "--min-agl", "100")
@@ -70,7 +70,7 @@ class CheckPlan(PlanCase):
             self.write(extra)
             self.call(*options, code=0)
             out, _ = self.call(*options, "--airspace", "z.json", code=1)
-            self.assertIn(f": the {word} ", out)
+            self.assertIn(f": the {word}: ", out)
             self.assertIn("'Z' of 'z.json'", out)
 
     def test_circles_and_the_way_from_home_are_judged(self):
@@ -78,18 +78,19 @@ class CheckPlan(PlanCase):
         options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json")
         # East of the last item, where its circle goes and no leg does.
         self.zones("z.json", self.around(-84.1944, 36.66, 0.001), 3000)
-        for command, params in ((17, [0, 0, 500, 0]), (18, [3, 0, -500, 0]), (19, [60, 0, 500, 0]),
-                                (31, [1, 500, 0, 1])):
+        for command, params in ((17, [0, 0, 500, 0]), (18, [3, 0, -500, 0]), (31, [1, 500, 0, 1])):
             loiter = item(high[3], 4)
-            self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter])
-            self.call(*options, code=0)
+            self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter], vehicleType=1)
+            # ArduPilot's aeroplane goes home at the end.
+            out, _ = self.call(*options, code=1)
+            self.assertNotIn("item 4 (waypoint) to", out)
             loiter["command"] = command
             loiter["params"][:4] = params
-            self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter])
+            self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter], vehicleType=1)
             out, _ = self.call(*options, code=1)
             self.assertIn("item 4 (loiter): its circle: ", out)
         takeoff = dict(item([-84.38, 36.50, 1500], 1), command=22)
-        self.write([takeoff, *(item(point, n + 2) for n, point in enumerate(high[1:]))])
+        self.write([takeoff, *(item(point, n + 2) for n, point in enumerate(high[1:]))], firmwareType=12)
         self.zones("z.json", self.around(-84.38, 36.49, 0.003), 3000)  # between home and item 1
         out, _ = self.call(*options, code=1)
         self.assertIn("item 1 (take-off): the way from home: ", out)
@@ -109,7 +110,7 @@ class CheckPlan(PlanCase):
         self.write([item([-84.38, 36.48, 900], 1), item([-84.37, 36.48, 900], 2), landing],
                    vehicleType=1)
         out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
-        self.assertIn("item 2 (landing): the descent to land goes through the ground", out)
+        self.assertIn("item 2 (landing): the landing: goes through the ground", out)
 
     def test_a_landing_elsewhere_is_flown_to_first(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
@@ -118,13 +119,13 @@ class CheckPlan(PlanCase):
         options = ("mission.plan", "--terrain", TERRAIN, "--min-agl", "100", "--airspace", "z.json")
         self.zones("z.json", self.around(-84.195, 36.665, 0.001), 1450)  # below that leg
         out, _ = self.call(*options, code=0)
-        self.assertIn("5 waypoints", out)
+        self.assertIn("4 waypoints", out)
         # An aeroplane goes down along it.
         self.write([*(item(point, n + 1) for n, point in enumerate(high)), landing], vehicleType=1)
         out, _ = self.call(*options, code=1)
-        self.assertIn("item 9 (landing): the descent", out)
+        self.assertIn("item 9 (landing): the landing: ", out)
 
-    def test_of_two_landings_the_descent_begins_above_the_first(self):
+    def test_the_first_of_two_landings_ends_the_flight(self):
         points = [[-84.38, 36.48, 1500], [-84.20, 36.66, 1500], [-84.20, 36.66, 620], [-84.20, 36.66, 600]]
         items = [item(p, n + 1) for n, p in enumerate(points)]
         items[2]["command"] = items[3]["command"] = 21
@@ -138,12 +139,13 @@ class CheckPlan(PlanCase):
         self.assertNotEqual(between, zone)
         (self.folder / "z.json").write_text(between)
         out, _ = self.call(*options, "--airspace", "z.json", code=1)
-        self.assertIn("item 4 (landing): the descent to land passes too close", out)
+        self.assertIn("item 3 (landing): the landing: ", out)
+        self.assertIn("item 4 (landing): is not flown", out)
 
     def test_one_position_is_judged(self):
         self.check([[-84.20, 36.66, 1500]], "--min-agl", "100", code=0)
         out, _ = self.check([[-84.20, 36.66, 200]], code=1)
-        self.assertIn("the only position: lies up to", out)
+        self.assertIn("its place: ", out)
 
     def test_a_return_is_flown_home(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
@@ -156,22 +158,23 @@ class CheckPlan(PlanCase):
         self.call(*options, code=0)
         self.write([*points, back])
         out, _ = self.call(*options, code=1)
-        self.assertIn("item 4 (waypoint) to item 9 (return to launch)", out)
+        self.assertIn("item 9 (return to launch): the way home: ", out)
         self.assertNotIn("skipped", out)
 
     def test_what_is_not_judged_does_not_pass(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
         points = [item(point, n + 1) for n, point in enumerate(high)]
-        jump = dict(item([0, 0, 0], 5), command=177, frame=2, params=[1, 2, 0, 0, 0, 0, 0])
         scan = {"type": "ComplexItem", "complexItemType": "StructureScan"}
         spline = dict(item(high[3], 5), command=82)
         survey = {"type": "ComplexItem", "complexItemType": "survey",
                   "TransectStyleComplexItem": {"Items": []}}
-        for extra, words in ((jump, "item 5 (jump)"), (scan, "mission.items.4 (complex item)"),
-                             (spline, "item 5 (spline)"), (survey, "mission.items.4 (complex item)")):
+        for extra, words in ((scan, "mission.items.4 (complex item): where this flies is not judged"),
+                             (spline, "item 5 (spline): the curve of a spline is not judged"),
+                             (survey, "mission.items.4 (complex item): where this flies is not judged")):
             self.write([*points, extra])
             out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
-            self.assertIn(words + ": where this flies is not judged", out)
+            self.assertTrue(out.startswith("not judged: mission.plan"), out)
+            self.assertIn(words, out)
         camera = dict(item([0, 0, 0], 5), command=203, frame=2)
         self.write([*points, camera])
         self.call("mission.plan", "--terrain", TERRAIN, code=0)
@@ -236,14 +239,14 @@ class CheckPlan(PlanCase):
                    schedule={"startTime": "12:40:00Z", "endTime": "13:00:00Z"})
         options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json", "--start-time",
                    "2026-06-18T12:00:00Z")
-        self.write(points)  # 27 km at 5 m/s
+        self.write(points)  # 27 km at 10 m/s
         self.call(*options, code=1)
-        self.write(points, hoverSpeed=60)
-        self.call(*options, code=0)
-        faster = dict(item([0, 0, 0], 1), command=178, params=[0, 60, -1, 0, 0, 0, 0])
+        (self.folder / "fast.param").write_text("WPNAV_SPEED,6000\n")
+        self.call(*options, "--params", "fast.param", code=0)
+        faster = dict(item([0, 0, 0], 1), command=178, frame=2, params=[0, 60, -1, 0, 0, 0, 0])
         self.write([faster, *points])
         self.call(*options, code=0)
-        waiting = dict(item([0, 0, 0], 1), command=93, params=[2400, -1, -1, -1, 0, 0, 0])
+        waiting = dict(item([0, 0, 0], 1), command=93, frame=2, params=[2400, -1, -1, -1, 0, 0, 0])
         self.write([faster, points[0], waiting, *points[1:]])
         self.call(*options, code=1)
 
@@ -251,6 +254,43 @@ class CheckPlan(PlanCase):
         self.zones("z.json", self.around(8, 47), 3000)
         self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
         self.call("--terrain", TERRAIN, "--airspace", "z.json", "mission.plan", code=0)
+
+    def test_who_flies_it_is_part_of_the_question(self):
+        points = [[-84.38, 36.48, 1500], [-84.36, 36.48, 1500], [-84.36, 36.46, 1500]]
+        self.zones("z.json", self.around(-84.36022, 36.47982, 0.00008), 3000)  # within the corner
+        options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json")
+        items = [item(point, n + 1) for n, point in enumerate(points)]
+        self.write(items)
+        self.call(*options, code=0)
+        self.call(*options, "--vehicle", "plane", code=1)
+        self.write(items, firmwareType=0, vehicleType=0)
+        out, _ = self.call(*options, code=1)
+        self.assertIn("ArduPilot plane: ", out)
+        self.assertIn("note: judged as each of these may fly it: ArduPilot copter, ", out)
+        self.call(*options, "--autopilot", "ardupilot", "--vehicle", "copter", code=0)
+        _, err = self.call(*options, "--autopilot", "betaflight", code=2)
+        self.assertIn("--autopilot", err)
+
+    def test_parameters_are_read(self):
+        self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
+        options = ("mission.plan", "--terrain", TERRAIN, "--json", "--params", "p")
+        for text, code in (("# of a vehicle\nWP_SPD 20\n", 0), ("WPNAV_SPEED,2000\n", 0),
+                           ("1\t1\tWPNAV_SPEED\t2000\t9\n", 0), ("WP_SPD\n", 3), ("WP_SPD fast\n", 3),
+                           ("", 3)):
+            (self.folder / "p").write_text(text)
+            out, err = self.call(*options, code=code)
+            if code == 0:
+                self.assertEqual(json.loads(out)["parameters"]["WP_SPD"], 20, text)
+            else:
+                self.assertIn("p:1: expected a parameter" if text else "p: contains no parameters", err)
+
+    def test_models_may_be_several(self):
+        self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
+        (self.folder / "tiles").mkdir()
+        (self.folder / "tiles" / "a.tif").write_bytes(pathlib.Path(TERRAIN).read_bytes())
+        one, _ = self.call("mission.plan", "--terrain", TERRAIN, "--min-agl", "10", code=0)
+        two, _ = self.call("mission.plan", "--terrain", "tiles", "--terrain", TERRAIN, "--min-agl", "10", code=0)
+        self.assertEqual(one.splitlines()[0], two.splitlines()[0])
 
     def test_a_plan_in_a_scenario(self):
         scenario = str(pathlib.Path(SOURCES) / "configs/scenarios/jacksboro_ridge.yaml")

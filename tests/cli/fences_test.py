@@ -26,6 +26,7 @@ def rectangle(low, high):
 WEST = rectangle([-84.45, 36.4], [-84.25, 36.7])
 EAST = rectangle([-84.35, 36.4], [-84.1, 36.7])
 
+COPTER = ("--autopilot", "ardupilot", "--vehicle", "copter")
 
 class Fences(PlanCase):
     def plan(self, points, polygons=(), circles=(), rally=()):
@@ -80,7 +81,7 @@ class Fences(PlanCase):
             lines += [f"{n + 3}\t0\t0\t{command}\t4\t0\t0\t0\t{lat}\t{lon}\t0\t1"
                       for n, (command, lat, lon) in enumerate(corners)]
             (self.folder / "m.waypoints").write_text("\n".join(lines) + "\n")
-            self.call("m.waypoints", "--terrain", TERRAIN, code=code)
+            self.call("m.waypoints", "--terrain", TERRAIN, *COPTER, code=code)
 
     def test_rally_points_are_judged_as_places(self):
         hospital = ("hospital", False, [36.60, -84.22], 500)
@@ -98,7 +99,7 @@ class Fences(PlanCase):
                 fences = [] if zone == "hospital" else [("west", WEST)]
                 self.plan(far, fences, [hospital], [good, point])
                 found = self.violations()
-                self.assertEqual({(one["constraint"], *one["items"]) for one in found},
+                self.assertEqual({(one["rule"], *one["items"]) for one in found},
                                  {("rally", "rally point 2")})
                 if layer:
                     self.assertIn((layer, zone), {(one["layer"], one["zone"]) for one in found})
@@ -111,7 +112,7 @@ class Fences(PlanCase):
                       for n, lon in enumerate((-84.38, -84.3799))]
             lines.append(f"3\t0\t10\t5100\t0\t0\t0\t0\t36.48\t-84.379\t{height}\t1")
             (self.folder / "m.waypoints").write_text("\n".join(lines) + "\n")
-            self.call("m.waypoints", "--terrain", TERRAIN, *options, "--junit", "j.xml", code=code)
+            self.call("m.waypoints", "--terrain", TERRAIN, *COPTER, *options, "--junit", "j.xml", code=code)
             suite = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot()
             self.assertEqual([case.get("name") for case in suite.iter("testcase") if len(case)],
                              ["rally point 1"] * code)

@@ -14,9 +14,10 @@ POINTS = [[-84.38, 36.48, 800], [-84.30, 36.54, 900], [-84.22, 36.60, 800], [-84
 
 
 def item(point, number):
+    """The first leaves its yaw to the autopilot, as waypoints may."""
     lon, lat, height = point
     return {"type": "SimpleItem", "command": 16, "frame": 0, "doJumpId": number, "autoContinue": True,
-            "params": [0, 0, 0, None, lat, lon, height]}
+            "params": [0, 0, 0, None if number == 1 else 0, lat, lon, height]}
 
 
 def plan_of(points):

@@ -95,11 +95,11 @@ class Zones(unittest.TestCase):
         told, _ = self.call("check", "mission.plan", "--terrain", TERRAIN, "--json", "--junit", "j.xml",
                             code=1)
         one, = json.loads(told)["violations"]
-        self.assertEqual([one[key] for key in ("constraint", "unit", "layer", "zone")],
+        self.assertEqual([one[key] for key in ("rule", "unit", "layer", "zone")],
                          ["clearance", "m", "fence of the mission", "hospital"])
         failure, = xml.etree.ElementTree.parse(self.folder / "j.xml").getroot().iter("failure")
         self.assertEqual(failure.get("type"), "clearance")
-        self.assertRegex(failure.text, r"value -\d.* m, limit 0 m, layer fence of the mission, zone hospital")
+        self.assertRegex(failure.text, r"value -\d.* m, limit \d+(\.5)? m, layer fence of the mission, zone hospital")
 
 
 if __name__ == "__main__":

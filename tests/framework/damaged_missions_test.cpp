@@ -68,7 +68,10 @@ void expect_refused(const std::string& file, const std::string& valid,
                                  ? damage.after
                                  : replaced(valid, damage.before, damage.after);
     try {
-      read_mission(file, text);
+      const MissionFile mission = read_mission(file, text);
+      if (!mission.route_problem.empty()) {  // its commands are judged, but it is no route
+        throw Error(file + ": " + mission.route_problem);
+      }
       ADD_FAILURE() << file << ": accepted: " << damage.before << " -> "
                     << damage.after.substr(0, 60);
     } catch (const Error& error) {

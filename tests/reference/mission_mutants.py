@@ -165,39 +165,10 @@ class Mutant:
         """(suffix, text)."""
         rng = self.rng
         self.digits = rng.random() < 0.5
-        suffix = rng.choice(["plan", "plan", "plan", "waypoints", "waypoints", "waypoints",
-                             "kml", "gpx", "geojson"][:6 if self.has_circle else 9])
+        suffix = rng.choice(["kml", "gpx", "geojson"])
         home = [*self.lonlat([0, 0, 0, *self.home], near), self.home[2]]
         rows = [[*r[:3], *self.lonlat(r, near), r[5]] for r in self.rows]
-        if suffix == "plan":
-            return suffix, self.plan(home, rows)
-        if suffix == "waypoints":
-            lines = [[0, 1, 0, 16, 0, 0, 0, 0, *home, 1]]
-            lines += [[n, 0, row[1], row[0], *row[2], *row[3:], 1] for n, row in enumerate(rows, 1)]
-            return suffix, "QGC WPL 110\n" + "".join(
-                "\t".join("nan" if v is None else repr(v) for v in line) + "\n" for line in lines)
         return suffix, self.map_text(suffix, home, rows)
-
-    def plan(self, home, rows):
-        items = []
-        for n, row in enumerate(rows, 1):
-            item = {"type": "SimpleItem", "autoContinue": True, "doJumpId": n, "command": row[0],
-                    "frame": row[1]}
-            if self.rng.random() < 0.2:
-                item.update(params=row[2], coordinate=row[3:])
-            else:
-                item.update(params=row[2] + row[3:])
-            items.append(item)
-        if len(items) > 3 and self.rng.random() < 0.25:
-            first = self.rng.randrange(len(items) - 2)
-            items[first:first + 3] = [{"type": "ComplexItem", "complexItemType": "survey",
-                                       "TransectStyleComplexItem": {"Items": items[first:first + 3]}}]
-        body = {"version": 2, "firmwareType": 12, "vehicleType": self.vehicle, "cruiseSpeed": 15,
-                "hoverSpeed": 5, "plannedHomePosition": home, "items": items}
-        fence = self.fence or {"version": 2, "polygons": [], "circles": []}
-        return json.dumps({"fileType": "Plan", "version": 1, "groundStation": "test", "mission": body,
-                           "geoFence": fence,
-                           "rallyPoints": {"version": 2, "points": []}})
 
     def map_text(self, suffix, home, rows):
         """One line; heights as they come, in one frame."""

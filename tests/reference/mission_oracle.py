@@ -41,7 +41,7 @@ class Answer:
             return
         try:
             answer = json.loads(out)
-            self.word = answer.get("verdict") or ("pass" if answer["passed"] else "fail")
+            self.word = answer["verdict"]
             self.violations = answer["violations"]
             self.check(code)
         except (ValueError, KeyError, TypeError) as error:

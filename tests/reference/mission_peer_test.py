@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`altiplan check MISSION --terrain` against mission_peer: mission_peer_test.py PROGRAM FOLDER [MISSIONS
-[SEED]]. Mutated missions over real models and moved airspace: the verdict, which legs violate what, and by
-how much."""
+"""`altiplan check FILE --terrain` against mission_peer: mission_peer_test.py PROGRAM FOLDER [MISSIONS
+[SEED]]. Routes as drawn (KML, GPX, GeoJSON), made of mutated missions, over real models and moved airspace:
+the verdict, which legs violate what, and by how much. What autopilots make of commands: mission_oracle.py."""
 import collections
 import datetime
 import json
@@ -47,7 +47,6 @@ class World:
             made = folder / (pathlib.Path(file).stem + "-" + name)
             made.write_text(text)
             self.zones.append((made, zones_peer.read(made.name, text, self.model)))
-        self.fences = [made for made, _ in self.zones if made.suffix == ".plan"]
 
 
 def worlds(data, folder, rng):
@@ -72,16 +71,11 @@ class Case:
     def __init__(self, source, world, folder, rng):
         self.world, self.rng, self.folder = world, rng, folder
         mutant = mission_mutants.Mutant(source.read_text(), world.model, rng)
-        if rng.random() < 0.1:
-            mutant.fence = json.loads(rng.choice(world.fences).read_text())["geoFence"]
         suffix, self.text = mutant.written(world.near)
         self.file = folder / ("mission." + suffix)
         self.file.write_text(self.text)
         self.mission = mission_peer.read(self.text)
         self.limits, self.zones, self.start, self.flight = {}, [], None, None
-        self.fence = []
-        if suffix == "plan":
-            self.fence = zones_peer.plan_fence("fence of the mission", json.loads(self.text), world.model)
         try:
             self.choose()
         except mission_peer.Refused:
@@ -91,7 +85,7 @@ class Case:
         """Limits, half of them next to what decides; zones, some of them made for a leg."""
         rng, limits = self.rng, self.limits
         self.flight = mission_peer.Flight(self.mission, self.world.model)
-        legs, others, _ = mission_peer.judge(self.flight, self.world.model, [], {"min_agl": 0, "max_agl": 0})
+        legs, others = mission_peer.judge(self.flight, self.world.model, [], {"min_agl": 0, "max_agl": 0})
         legs += others
         lows = [leg.margins["ground_clearance"] for leg in legs if not leg.off_ground]
         highs = [-leg.margins["altitude"] for leg in legs if not leg.off_ground]
@@ -108,7 +102,7 @@ class Case:
         if rng.random() < 0.6:
             decides = lows and (is_kept or rng.random() < 0.6)
             limits["max_agl"] = beside(max(highs), 1) if decides else rng.uniform(60, 600)
-        if rng.random() < 0.35 and not self.flight.circle:
+        if rng.random() < 0.35:
             limits["radius"] = rng.uniform(0, 6)
             if lows and rng.random() < 0.7:
                 limits["radius"] = self.radius(lows, beside)
@@ -174,7 +168,6 @@ class Case:
 # --- comparison
 
 ORDER = ("violated", "uncertain", "tie", "kept")
-ALONE = ("climb", "descent", "home", "not_judged")  # of one item
 
 
 def status(margin, tie):
@@ -199,11 +192,10 @@ def of_zones(verdicts, start):
 
 def expected(case):
     """{(constraint, items): state}, the files that may block each, values, and the least height."""
-    legs, beside, columns = mission_peer.judge(
-        case.flight, case.world.model, case.fence + [z for _, zones in case.zones for z in zones],
+    legs, beside = mission_peer.judge(
+        case.flight, case.world.model, [z for _, zones in case.zones for z in zones],
         case.limits)
-    states = {("not_judged", (name,)): "violated" for name, _, _ in case.mission.moves}
-    files, values, close = {}, {}, 0
+    states, files, values, close = {}, {}, {}, 0
     home = mission_peer.home_margin(case.mission, case.world.model)
     if home is not None:
         states["home", ("home",)] = status(home, TIE_M)
@@ -233,11 +225,6 @@ def expected(case):
             note("clearance", terrain)
         files.setdefault(("clearance", leg.names), set()).update(
             may | ({"terrain"} if terrain != "kept" else set()))
-    for rule, item, verdicts, low in columns:
-        state, may = of_zones(verdicts, case.start)
-        if low is not None:
-            state = min(state, status(low, BLOCKED_TIE_M), key=ORDER.index)
-        states[rule, (item,)], files[rule, (item,)] = state, may | {"terrain"}
     least = [leg.lowest for leg in legs or beside]  # of a single position it is a point's
     return states, files, values, None if None in least else min(least, default=None), close
 
@@ -246,25 +233,12 @@ def heights_differ(told, least):
     return (told is None) != (least is None) or told is not None and abs(told - least) > 2e-6
 
 
-def by_rule(states):
-    """With turns, a program's legs are more than the items': the worst of each constraint."""
-    found = {}
-    for (rule, items), state in states.items():
-        key = (rule, items if rule in ALONE else ())
-        found[key] = min(found.get(key, "kept"), state, key=ORDER.index)
-    return found
-
-
 def differences(case, answer):
     """Sentences about what program and peer do not agree on, and the mission's state."""
     states, files, values, least, close = expected(case)
-    turns = ("clearance", ("circle",)) in states
-    if turns:
-        states, files, values = by_rule(states), {}, {}
     found, wrong = set(), []
     for v in answer["violations"]:
-        items = () if turns and v["constraint"] not in ALONE else tuple(v["items"])
-        key = (v["constraint"], items)
+        key = (v["rule"], tuple(v["items"]))
         found.add(key)
         state = states.get(key)
         if state is None:
@@ -279,14 +253,14 @@ def differences(case, answer):
     for key, state in states.items():
         if state == "violated" and key not in found:
             wrong.append("passed that is violated: %s %s" % key)
-    if answer["passed"] != (not answer["violations"]):
+    if (answer["verdict"] == "pass") != (not answer["violations"]):
         wrong.append("passed with violations")
     told = answer["metrics"]["min_ground_clearance_m"]
-    if not turns and heights_differ(told, least):
+    if heights_differ(told, least):
         wrong.append("least height above ground %s, expected %s" % (told, least))
     worst = next((s for s in ORDER if s in states.values()), "kept")
     legs = collections.Counter(states.values()) + collections.Counter(
-        {"within 1 mm of a limit": close, "of missions with circles": turns * len(states)})
+        {"within 1 mm of a limit": close})
     return wrong, worst, legs
 
 
@@ -300,7 +274,7 @@ def judge(case, program, counts):
         return ["exit code %d: %s" % (done.returncode, done.stderr)]
     answer = json.loads(done.stdout)
     wrong, worst, legs = differences(case, answer)
-    if answer["passed"] != (done.returncode == 0):
+    if (answer["verdict"] == "pass") != (done.returncode == 0):
         wrong.append("exit code %d" % done.returncode)
     counts[{"violated": "refused by both", "kept": "passed by both"}.get(worst, worst)] += 1
     for state, number in legs.items():

@@ -22,6 +22,8 @@ struct CheckArguments {
   std::optional<std::string> result;
   std::optional<std::string> route;
   PlanCheck plan;
+  std::optional<std::string> autopilot;
+  std::optional<std::string> vehicle;
   host::Overrides overrides;
 };
 
@@ -158,10 +160,39 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
                   "UTC, 2026-05-01T10:00:00Z: for zones with hours")
       ->needs(terrain);
   command
-      .add_option("--speed M/S", plan.speed_mps,
-                  "where the mission gives no speed, for zones with hours (m/s, default 5)")
+      .add_option("--speed M/S", plan.gate.drawn_mps,
+                  "along lines of a file without commands, for zones with hours (m/s, default 5)")
       ->check(number_from(0.01, 1000))
       ->needs(terrain);
+}
+
+/// Who flies a mission, where its file does not say.
+void add_autopilot_options(App& command, CheckArguments& arguments) {
+  command.add_option("--autopilot NAME", arguments.autopilot, "who flies it: ardupilot or px4")
+      ->check(Check::one_of({"ardupilot", "px4"}));
+  command.add_option("--vehicle NAME", arguments.vehicle, "what flies: copter, plane or vtol")
+      ->check(Check::one_of({"copter", "plane", "vtol"}));
+  command.add_option("--params FILE", arguments.plan.parameters,
+                     "the autopilot's parameters (.param, .params), in place of its defaults");
+  command
+      .add_option("--runway DEGREES", arguments.plan.gate.flight.runway_deg,
+                  "heading of an aeroplane's take-off, clockwise from north")
+      ->check(number_from(0, 360));
+}
+
+/// The autopilot that the options name.
+void take_autopilot(CheckArguments& arguments) {
+  using formats::Airframe;
+  host::GateOptions& gate = arguments.plan.gate;
+  if (arguments.autopilot) {
+    gate.firmware =
+        *arguments.autopilot == "px4" ? formats::Firmware::px4 : formats::Firmware::ardupilot;
+  }
+  if (arguments.vehicle) {
+    gate.airframe = *arguments.vehicle == "copter"  ? Airframe::copter
+                    : *arguments.vehicle == "plane" ? Airframe::plane
+                                                    : Airframe::vtol;
+  }
 }
 
 /// What is written besides the verdict; returns the options.
@@ -179,7 +210,7 @@ std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
 
 /// A mission whose ending is not its format's is told by --scenario or --terrain.
 bool is_plan(const CheckArguments& arguments) {
-  return arguments.result && (arguments.plan.terrain || arguments.plan.scenario);
+  return arguments.result && (!arguments.plan.terrain.empty() || arguments.plan.scenario);
 }
 
 /// Throws UsageError for options that do not fit together.
@@ -214,6 +245,7 @@ void add_check(App& app, Action& action) {
   const auto prepare = [outputs](CheckArguments& given) {
     expect_fitting(given, *outputs);
     given.plan.plan = given.result.value_or("");
+    take_autopilot(given);
   };
   const auto check = [](const CheckArguments& given) {
     return is_plan(given) ? check_plan(given.plan, given.overrides)
@@ -237,11 +269,15 @@ void add_check(App& app, Action& action) {
   auto* terrain =
       command
           .add_option("--terrain FILE", arguments.plan.terrain,
-                      "elevation model over which to judge a mission, without a scenario")
+                      "elevation model over which to judge a mission, without a scenario, or a "
+                      "folder of tiles; repeatable")
+          ->take_all()
+          ->one_at_a_time()
           ->excludes(scenario)
           ->needs(result);
   route->needs(scenario);
   add_world_options(command, terrain, arguments.plan);
+  add_autopilot_options(command, arguments);
   *outputs = add_outputs(command, arguments.plan);
   add_plugin_path(command, arguments.overrides);
   command.add_flag("--json", arguments.plan.json, "print as JSON");

@@ -39,7 +39,7 @@ std::string items_of(const Finding& finding) {
 }
 
 std::string cure_of(const Finding& finding, const PlanReport& report) {
-  return finding.cure ? in_words(*finding.cure, report.name_of(finding.cure->waypoint)) : "";
+  return finding.cure ? in_words(*finding.cure, report.name_of(finding.cure->command)) : "";
 }
 
 /// "not judged: airspace, heights above ground", for what the options leave out; "" for nothing.
@@ -58,10 +58,11 @@ std::string left_out(const PlanCheck& plan) {
 
 void print(const PlanReport& report, const host::Mission& world) {
   const Color color = report.passed() ? Color::good : Color::bad;
-  std::printf("%s: %s, %zu waypoints, %s km, %s\n",
-              painted(stdout, color, report.passed() ? "pass" : "fail").c_str(),
+  std::printf("%s: %s, %zu waypoints, %s km, %s, %s\n",
+              painted(stdout, color, word_of(report.verdict())).c_str(),
               host::printable(report.file).c_str(), report.measures.waypoints,
-              fixed(report.measures.length_m / 1000, 3).c_str(), report.height_in_words().c_str());
+              fixed(report.measures.length_m / 1000, 3).c_str(), report.height_in_words().c_str(),
+              time_in_words(report.time).c_str());
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
     if (finding.at) {
@@ -76,29 +77,28 @@ void print(const PlanReport& report, const host::Mission& world) {
   }
 }
 
-/// When the vehicle is expected at each waypoint of the route, seconds from take-off.
-std::vector<double> arrivals_of(const PlanCheck& plan, const formats::MissionFile& mission,
-                                const PlanReport& report) {
-  const std::vector<double> times = flown_times(plan, mission);
-  std::vector<double> arrivals;
-  std::size_t n = 0;
-  for (const formats::MissionItem& item : report.imported.items) {
-    while (n < times.size() && mission.items[n].place != item.place) {
-      ++n;
-    }
-    arrivals.push_back(n < times.size() ? times[n] : kInfinity);
-  }
-  return arrivals;
+/// [fastest, slowest]; null where nothing ends it.
+Json to_json(const host::TimeSpan& time) {
+  const auto seconds = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+  return {seconds(time.min_s), seconds(time.max_s)};
 }
 
-Json to_json(const PlanReport& report, const host::Mission& world,
-             const std::vector<double>& arrivals) {
+Json parts_json(const PlanReport& report) {
+  Json all = Json::array();
+  for (const host::ReportedPart& part : report.parts) {
+    all.push_back({{"items", part.items}, {"what", part.what}, {"time_s", to_json(part.time)}});
+  }
+  return all;
+}
+
+Json to_json(const PlanReport& report, const host::Mission& world) {
   Json all = Json::array();
   for (const Finding& finding : report.findings) {
     const Violation& violation = finding.violation;
-    Json one{{"constraint", violation.constraint},
+    Json one{{"rule", violation.constraint},
+             {"item", finding.item},
              {"items", finding.items},
-             {"leg", violation.at},
+             {"part", finding.what},
              {"value", violation.value},
              {"limit", violation.limit},
              {"margin", violation.value - violation.limit},
@@ -116,30 +116,48 @@ Json to_json(const PlanReport& report, const host::Mission& world,
     }
     all.push_back(std::move(one));
   }
-  Json times = Json::array();
-  for (std::size_t i = 0; i < arrivals.size(); ++i) {
-    const bool ends = std::isfinite(arrivals[i]);
-    times.push_back({{"item", report.name_of(i)}, {"time_s", ends ? Json(arrivals[i]) : Json()}});
+  Json autopilots = Json::array();
+  for (const formats::Autopilot& autopilot : report.autopilots) {
+    autopilots.push_back(autopilot.name());
   }
+  Json parameters = Json::object();
+  for (const host::Parameters::Used& used : report.parameters) {
+    parameters[used.name] = used.value;
+  }
+  const host::Verdict verdict = report.verdict();
   return Json{{"plan", report.file},
-              {"passed", report.passed()},
+              {"verdict", verdict == host::Verdict::not_judged ? "not_judged" : word_of(verdict)},
+              {"autopilots", autopilots},
+              {"parameters", parameters},
               {"violations", all},
-              {"arrivals", times},
+              {"time_s", to_json(report.time)},
+              {"parts", parts_json(report)},
               {"metrics", host::to_json(report.measures)},
               {"notes", report.notes}};
 }
 
-host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission) {
+host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
+                     const PlanReport& report) {
   host::Basis basis;
   const auto add_file = [&](const char* what, const std::string& file) {
     basis.emplace_back(what, file + ", SHA-256 " + host::sha256(file));
   };
   add_file("plan", plan.plan);
+  std::string autopilots;
+  for (const formats::Autopilot& autopilot : report.autopilots) {
+    autopilots += (autopilots.empty() ? "" : ", ") + autopilot.name();
+  }
+  basis.emplace_back("flown by", autopilots.empty() ? "not said: judged as drawn" : autopilots);
+  if (plan.parameters) {
+    add_file("parameters", *plan.parameters);
+  }
   if (plan.scenario) {
     add_file("scenario", *plan.scenario);
     return basis;
   }
-  add_file("terrain", *plan.terrain);
+  for (const std::string& file : models_of(plan)) {
+    add_file("terrain", file);
+  }
   for (const std::string& file : plan.airspace) {
     add_file("airspace", file);
   }
@@ -152,52 +170,46 @@ host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission)
   if (mission.home) {
     basis.emplace_back("home", fixed(mission.home->lat, 6) + ", " + fixed(mission.home->lon, 6) +
                                    " (latitude, longitude), " + fixed(mission.home->altitude_m, 1) +
-                                   " m above sea level");
+                                   " m above sea level: armed at that place and height");
   }
   add_metres("vehicle's radius", plan.radius_m);
   add_metres("least height above ground", plan.min_above_ground_m);
   add_metres("greatest height above ground", plan.max_above_ground_m);
   add_metres("greatest distance from the ground", plan.max_ground_distance_m);
-  basis.emplace_back("hours", plan.start_time ? *plan.start_time + " and " +
-                                                    duration(flown_s(plan, mission)) + " on"
-                                              : "any: zones count at all hours");
+  basis.emplace_back("hours", plan.start_time
+                                  ? *plan.start_time + " and " + time_in_words(report.time) + " on"
+                                  : "any: zones count at all hours");
   basis.emplace_back(
       "judged", formats::iso_time(double(std::time(nullptr))) + " by altiplan " ALTIPLAN_VERSION);
   return basis;
 }
 
-/// The changes of items that cure the mission; none if that fails.
-std::vector<host::ChangedItem> changes_of(const PlanReport& report, const host::Mission& world,
-                                          std::string& words) {
-  Request request = world.request;
-  request.world = std::make_shared<const World>(world.truth);
-  const Route& route = report.imported.route;
-  request.start.position = route.front();
-  request.goal = {route.back()};
-  const host::Bonds bonds = report.bonds();
-  const std::optional<Route> better = host::cured(route, request, bonds);
-  const std::size_t count = report.imported.items.size() - (bonds.last_is_led ? 1 : 0);
+/// The changes of items from one mission to another, which differ in heights and places alone.
+std::vector<host::ChangedItem> changes_of(const formats::MissionFile& before,
+                                          const formats::MissionFile& after, const World& world,
+                                          const PlanReport& report, std::string& words) {
   std::vector<host::ChangedItem> changes;
-  for (std::size_t i = 0; better && i < count; ++i) {
-    Vec3 by = (*better)[i] - route[i];
-    if (by.norm() == 0) {
+  for (std::size_t n = 0; n < before.commands.size(); ++n) {
+    const formats::MissionCommand& old = before.commands[n];
+    const formats::MissionCommand& now = after.commands[n];
+    host::ChangedItem change{
+        old.place, {}, std::round((now.altitude_m - old.altitude_m) * 10) / 10};
+    Vec3 aside(0, 0, 0);
+    if (old.lon != now.lon || old.lat != now.lat) {
+      change.lonlat = {now.lon, now.lat};
+      const auto [x, y] = world.frame().to_local(old.lon, old.lat);
+      const auto [to_x, to_y] = world.frame().to_local(now.lon, now.lat);
+      aside = {to_x - x, to_y - y, 0};
+    }
+    if (!change.lonlat && change.raised_by_m == 0) {
       continue;
     }
-    if (bonds.follows_ground[i]) {  // its height above the ground
-      by.z() -= world.truth.ground((*better)[i].x(), (*better)[i].y()).value_or(0) -
-                world.truth.ground(route[i].x(), route[i].y()).value_or(0);
-    }
-    by.z() = std::round(by.z() * 10) / 10;
-    host::ChangedItem change{report.imported.items[i].place, {}, by.z()};
-    if (by.head<2>().norm() > 0) {
-      change.lonlat = world.truth.frame().to_lonlat((*better)[i].x(), (*better)[i].y());
-    }
-    changes.push_back(std::move(change));
-    for (const Vec3& part : {Vec3(0, 0, by.z()), Vec3(by.x(), by.y(), 0)}) {
+    for (const Vec3& part : {Vec3(0, 0, change.raised_by_m), aside}) {
       if (part.norm() > 0) {
-        words += "  " + in_words(host::Cure{i, part}, report.name_of(i)) + "\n";
+        words += "  " + in_words(host::Cure{n, part}, report.name_of(n)) + "\n";
       }
     }
+    changes.push_back(std::move(change));
   }
   return changes;
 }
@@ -209,14 +221,17 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
     warn(*plan.fixed + ": not written: the mission passes as it is");
     return;
   }
+  const auto cured =
+      busy("curing the mission", [&] { return host::cured_plan(mission, world, plan.gate); });
   std::string words;
-  const std::vector<host::ChangedItem> changes =
-      busy("curing the mission", [&] { return changes_of(report, world, words); });
-  const std::string better = host::changed_plan(text, mission.format, changes);
-  const bool passes =
-      !changes.empty() &&
-      host::judge_plan(plan.plan, formats::read_mission(plan.plan, better), world, !plan.scenario)
-          .passed();
+  std::string better;
+  bool passes = false;
+  if (cured) {
+    better = host::changed_plan(text, mission.format,
+                                changes_of(mission, *cured, world.truth, report, words));
+    passes = host::judge_plan(plan.plan, formats::read_mission(plan.plan, better), world, plan.gate)
+                 .passed();
+  }
   if (!passes) {
     warn(*plan.fixed +
          ": not written: found no items to raise, lower or move with which the mission passes");
@@ -251,7 +266,9 @@ void add_notes(PlanReport& report, const host::Mission& world) {
 void expect_outputs(const PlanCheck& plan, const std::vector<std::filesystem::path>& read) {
   std::vector<std::string> others{plan.plan};
   others.insert(others.end(), plan.airspace.begin(), plan.airspace.end());
-  for (const auto& file : {plan.scenario, plan.terrain}) {
+  const std::vector<std::string> models = models_of(plan);
+  others.insert(others.end(), models.begin(), models.end());
+  for (const auto& file : {plan.scenario, plan.parameters}) {
     others.insert(others.end(), file.value_or(plan.plan));
   }
   for (const std::filesystem::path& file : read) {
@@ -280,18 +297,34 @@ void expect_files(const PlanCheck& plan) {
                   host::printable(file) + "'");
     }
   };
-  if (plan.terrain) {
-    expect("--terrain", *plan.terrain);
+  for (const std::string& file : plan.terrain) {
+    expect("--terrain", file);
+  }
+  if (plan.parameters) {
+    expect("--params", *plan.parameters);
   }
   for (const std::string& file : plan.airspace) {
     expect("--airspace", file);
   }
 }
-}  // namespace
 
-namespace {
+/// The world that the options describe in a part of the flight's time; none without zones with
+/// hours.
+host::WorldDuring world_during(const PlanCheck& plan, const formats::MissionFile& mission,
+                               const host::Overrides& overrides) {
+  if (!plan.start_time || plan.airspace.empty()) {
+    return {};
+  }
+  const double start_s = formats::parse_iso_time(*plan.start_time).value();
+  return [plan, mission, overrides, start_s](double from_s, double until_s) {
+    PlanCheck during = plan;
+    during.start_time = formats::iso_time(start_s + from_s);
+    during.flown_s = until_s - from_s;
+    return host::build_mission(world_of(during, mission, overrides), 1);
+  };
+}
 
-int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
+int judged(PlanCheck plan, const std::optional<host::Config>& scenario,
            const host::Overrides& overrides) {
   const std::string text = formats::read_file(plan.plan);
   const formats::MissionFile mission = formats::read_mission(plan.plan, text);
@@ -299,36 +332,40 @@ int judged(const PlanCheck& plan, const std::optional<host::Config>& scenario,
     static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
   }
   host::expect_route(plan.plan, mission);
+  plan.gate.world_during = world_during(plan, mission, overrides);
   const host::Mission world = busy("building the world", [&] {
     return host::build_mission(scenario ? *scenario : world_of(plan, mission, overrides), 1);
   });
-  PlanReport report = busy("judging the mission", [&] {
-    return host::judge_plan(plan.plan, mission, world, !plan.scenario);
-  });
+  PlanReport report = busy("judging the mission",
+                           [&] { return host::judge_plan(plan.plan, mission, world, plan.gate); });
   add_notes(report, world);
   if (const std::string words = left_out(plan); !words.empty()) {
     report.notes.insert(report.notes.begin(), words);
   }
-  const std::vector<double> arrivals = arrivals_of(plan, mission, report);
   if (plan.certificate) {
     host::write_file(*plan.certificate, busy("writing the certificate", [&] {
-      return certificate(report, world, basis_of(plan, mission), arrivals);
+      return certificate(report, world, basis_of(plan, mission, report));
     }));
   }
   if (plan.junit) {
     host::write_file(*plan.junit, junit(report));
   }
-  plan.json ? void(std::cout << host::file_text(to_json(report, world, arrivals)))
-            : print(report, world);
+  plan.json ? void(std::cout << host::file_text(to_json(report, world))) : print(report, world);
   if (plan.fixed) {
     fix(plan, report, text, mission, world);
   }
   return report.passed() ? kDone : kNoRoute;
 }
+
 }  // namespace
 
-int check_plan(const PlanCheck& plan, const host::Overrides& overrides) {
-  expect_files(plan);
+int check_plan(const PlanCheck& given, const host::Overrides& overrides) {
+  expect_files(given);
+  PlanCheck plan = given;
+  plan.gate.own_ends = !plan.scenario;
+  if (plan.parameters) {
+    plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
+  }
   std::optional<host::Config> scenario;
   if (plan.scenario) {
     scenario = host::load_scenario(*plan.scenario, overrides);

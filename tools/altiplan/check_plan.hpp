@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/config/config.hpp"
+#include "host/gate/plan_report.hpp"
 
 namespace altiplan::cli {
 
@@ -13,17 +14,19 @@ namespace altiplan::cli {
 struct PlanCheck {
   std::string plan;
   std::optional<std::string> scenario;
-  std::optional<std::string> terrain;
-  std::string crs;  ///< of a model that names none
+  std::vector<std::string> terrain;  ///< models, or folders of them
+  std::string crs;                   ///< of a model that names none
   std::vector<std::string> airspace;
   bool fills_voids = false;     ///< from their neighbours, else they are closed
   bool has_permission = false;  ///< for zones that take one
   double radius_m = 0;
-  std::optional<double> speed_mps;
+  host::GateOptions gate;                 ///< who may fly it
+  std::optional<std::string> parameters;  ///< a file with the autopilot's
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
   std::optional<double> max_ground_distance_m;
   std::optional<std::string> start_time;
+  std::optional<double> flown_s;  ///< for zones with hours; none: as long as the mission takes
   bool json = false;
   std::optional<std::string> certificate;
   std::optional<std::string> junit;

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include "host/gate/flight_time.hpp"
+#include "host/first_route/tiles.hpp"
+#include "host/gate/plan_report.hpp"
 #include "host/result/result_json.hpp"
 
 namespace altiplan::cli {
@@ -13,12 +14,12 @@ namespace {
 
 using host::Json;
 
-/// Where neither the file nor an option gives one: slow, so that more zones' hours count.
-constexpr double kSpeed = 5;
 /// Height of the ground where it is unknown, metres.
 constexpr double kClosed = 10'000;
-/// Of a mission that ends in a loiter without end.
+/// Of a flight without an end, seconds.
 constexpr double kLongest = 86400;
+/// Its time is known before its world is, but for what the ground adds.
+constexpr double kMargin = 1.1;
 /// The scenario that options describe, in messages.
 constexpr std::string_view kWorld = "the world of --terrain";
 
@@ -43,16 +44,30 @@ std::string point_text(const char* key, const formats::MissionItem& item) {
          host::exact_json_text(item.at.lat) + ", 0]}\n";
 }
 
+/// Seconds for which zones with hours are looked at.
+double horizon_s(const PlanCheck& plan, const formats::MissionFile& mission) {
+  return std::min(
+      plan.flown_s ? *plan.flown_s : kMargin * host::estimated_time(mission, plan.gate).max_s,
+      kLongest);
+}
+
 /// The scenario that the options describe.
 std::string world_text(const PlanCheck& plan, const formats::MissionFile& mission) {
   // A void is closed: whatever flies over it flies into the ground.
   const std::string voids = plan.fills_voids
                                 ? "voids: neighbours"
                                 : "voids: fill_m, fill_m: " + host::exact_json_text(kClosed);
-  std::string text = "altiplan: 1\nenvironment:\n  - terrain: {file: " + path_text(*plan.terrain) +
-                     (plan.crs.empty() ? "" : ", crs: " + host::exact_json_text(plan.crs)) + ", " +
-                     voids + "}\n";
-  std::set<std::string> ids{"terrain"};
+  std::string text = "altiplan: 1\nenvironment:\n";
+  std::set<std::string> ids;
+  for (const std::string& file : models_of(plan)) {
+    std::string id = "terrain";
+    while (!ids.insert(id).second) {
+      id = "terrain " + std::to_string(ids.size() + 1);
+    }
+    text += "  - terrain: {file: " + path_text(file) +
+            (plan.crs.empty() ? "" : ", crs: " + host::exact_json_text(plan.crs)) + ", " + voids +
+            "}\n    id: " + host::exact_json_text(id) + "\n";
+  }
   const auto add_zones = [&](const std::string& file, std::string name, const std::string& more) {
     while (!ids.insert(name).second) {
       name += "'";  // of another folder
@@ -62,7 +77,7 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
   };
   for (const std::string& file : plan.airspace) {
     add_zones(file, name_of(file),
-              ", horizon_s: " + host::exact_json_text(flown_s(plan, mission)) +
+              ", horizon_s: " + host::exact_json_text(horizon_s(plan, mission)) +
                   (plan.has_permission ? ", ask: skip" : ""));
   }
   if (has_fence(mission)) {
@@ -89,14 +104,6 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
 }
 }  // namespace
 
-std::vector<double> flown_times(const PlanCheck& plan, const formats::MissionFile& mission) {
-  return host::item_times(mission, plan.speed_mps.value_or(kSpeed));
-}
-
-double flown_s(const PlanCheck& plan, const formats::MissionFile& mission) {
-  return std::min(host::flight_time(mission, plan.speed_mps.value_or(kSpeed)), kLongest);
-}
-
 std::string about_file(const std::string& message) {
   constexpr std::string_view kKey = ".file: ";
   const std::size_t key = message.find(kKey);
@@ -104,6 +111,16 @@ std::string about_file(const std::string& message) {
   return is_one && message.starts_with(kWorld) && key != std::string::npos
              ? message.substr(key + kKey.size())
              : message;
+}
+
+std::vector<std::string> models_of(const PlanCheck& plan) {
+  std::vector<std::string> files;
+  for (const std::string& given : plan.terrain) {
+    for (const std::filesystem::path& file : host::model_files(given)) {
+      files.push_back(file.string());
+    }
+  }
+  return files;
 }
 
 host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission,

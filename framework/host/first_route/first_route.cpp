@@ -17,6 +17,10 @@ constexpr double kCopterSpeed = 10;
 constexpr double kBank = 30;  // degrees
 constexpr double kGravity = 9.80665;
 
+/// How far a copter's flight may be off the drawn route: corners are rounded, and numbers stored,
+/// within it.
+constexpr double kFlownWithin = 3;
+
 struct Try {
   int width;
   int fineness;
@@ -124,6 +128,16 @@ std::string FirstRoute::point(const WishedPoint& at) const {
          "], above_ground_m: " + text_of(at.above_ground_m.value_or(heights_.ends_m));
 }
 
+double FirstRoute::flown_margin() const {
+  double margin = kFlownWithin;
+  for (const WishedPoint& at : wish_.points) {
+    const double height = at.above_ground_m.value_or(heights_.ends_m);
+    margin =
+        std::min({margin, height - heights_.min_m, heights_.max_m.value_or(kInfinity) - height});
+  }
+  return std::max(margin, 0.0);
+}
+
 std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) const {
   const auto corner = [](const Vec3& p) {
     return "[" + text_of(p.x()) + ", " + text_of(p.y()) + ", " + text_of(p.z()) + "]";
@@ -145,9 +159,14 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
   if (wish_.start_time) {
     text += "start_time: " + exact_json_text(*wish_.start_time) + "\n";
   }
-  text += "constraints:\n  - ground_clearance: {min_m: " + text_of(heights_.min_m) + "}\n";
+  const double margin = flown_margin();
+  text += "constraints:  # by what a flight may be off, narrower than asked for\n";
+  text += "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) + "}\n";
   if (heights_.max_m) {
-    text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m) + "}\n";
+    text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m - margin) + "}\n";
+  }
+  if (!wish_.turn_radius_m) {
+    text += "  - clearance: {min_m: " + text_of(kFlownWithin) + "}\n";
   }
   return text;
 }

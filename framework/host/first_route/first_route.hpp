@@ -40,6 +40,8 @@ class FirstRoute {
   std::string environment(const Box& volume, const std::filesystem::path& folder) const;
   std::string vehicle() const;
   std::string point(const WishedPoint& at) const;
+  /// By how much the limits of height are narrower than wished for, as far as the points allow.
+  double flown_margin() const;
   std::string scenario(const Box& volume, const std::filesystem::path& folder) const;
   std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
   double speed_mps() const;

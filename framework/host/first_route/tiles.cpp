@@ -29,28 +29,6 @@ bool may_be_model(const fs::path& file) {
   return kExtensions.count(extension) > 0;
 }
 
-std::vector<fs::path> files_of(const fs::path& given) {
-  if (given.extension() == ".vrt") {
-    throw Error("--terrain: " + given.string() +
-                " is a VRT, which may read any file: give the tiles themselves, or their folder");
-  }
-  if (!fs::is_directory(given)) {
-    return {given};
-  }
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(given)) {
-    if (entry.is_regular_file() && may_be_model(entry.path())) {
-      files.push_back(entry.path());
-    }
-  }
-  if (files.empty()) {
-    throw Error("--terrain: the folder " + given.string() +
-                " holds no elevation model (.tif, .hgt, .dt1, .asc, …)");
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 /// So small a volume that little of a large model is read.
 Site probing_site(const World& empty) {
   Site site;
@@ -88,6 +66,28 @@ bool is_held(const std::vector<Tile>& tiles, double lon, double lat) {
                      [&](const Tile& tile) { return tile.holds(lon, lat); });
 }
 }  // namespace
+
+std::vector<fs::path> model_files(const fs::path& given) {
+  if (given.extension() == ".vrt") {
+    throw Error("--terrain: " + given.string() +
+                " is a VRT, which may read any file: give the tiles themselves, or their folder");
+  }
+  if (!fs::is_directory(given)) {
+    return {given};
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(given)) {
+    if (entry.is_regular_file() && may_be_model(entry.path())) {
+      files.push_back(entry.path());
+    }
+  }
+  if (files.empty()) {
+    throw Error("--terrain: the folder " + given.string() +
+                " holds no elevation model (.tif, .hgt, .dt1, .asc, …)");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 bool Tile::is_geographic() const { return frame.crs().rfind(kLonLat, 0) == 0; }
 
@@ -168,7 +168,7 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry) {
   std::vector<Tile> tiles;
   std::set<fs::path> read;
   for (const fs::path& given : wish.terrain) {
-    for (const fs::path& file : files_of(given)) {
+    for (const fs::path& file : model_files(given)) {
       if (read.insert(fs::weakly_canonical(file)).second) {
         try {
           tiles.push_back(read_tile(file, wish.crs.value_or(""), registry));

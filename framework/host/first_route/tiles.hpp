@@ -28,6 +28,9 @@ struct Tile {
   Box degrees() const;
 };
 
+/// The file, or all models in the folder; messages begin with --terrain.
+std::vector<std::filesystem::path> model_files(const std::filesystem::path& given);
+
 /// The models' layer as the terrain plugin builds it in that site.
 std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry,
                                          const std::string& voids = "neighbours");

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "host/base/words.hpp"
 #include "host/base/xml_text.hpp"
-#include "host/gate/leg_heights.hpp"
 #include "host/view/picture_svg.hpp"
 
 namespace altiplan::host {
@@ -33,13 +31,19 @@ std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
 }
 
 std::string in_degrees(double value, char positive, char negative) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6f %c", std::abs(value), value < 0 ? negative : positive);
-  return text;
+  return with_decimals(std::abs(value), 6) + " " + (value < 0 ? negative : positive);
 }
 
 std::string metres(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? with_digits(std::round(*value * 10) / 10, 6) : "–";
+}
+
+std::string joined(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) {
+    text += (text.empty() ? "" : " to ") + item;
+  }
+  return text;
 }
 
 std::string violations(const PlanReport& report, const Request& request) {
@@ -49,68 +53,48 @@ std::string violations(const PlanReport& report, const Request& request) {
   std::string html = "<h2>" + counted(report.findings.size(), "violation") + "</h2>\n<table>\n" +
                      row({"where", "worst at", "what", "cure"}, "th");
   for (const Finding& finding : report.findings) {
-    std::string items;
-    for (const std::string& item : finding.items) {
-      items += (items.empty() ? "" : " to ") + item;
-    }
-    html += row({xml_text(items), finding.at ? place_in_words(*finding.at, request) : "",
-                 xml_text(finding.violation.message),
-                 finding.cure
-                     ? xml_text(in_words(*finding.cure, report.name_of(finding.cure->waypoint)))
-                     : "none of a single item"});
+    html += row(
+        {xml_text(joined(finding.items)), finding.at ? place_in_words(*finding.at, request) : "",
+         xml_text(finding.violation.message),
+         finding.cure ? xml_text(in_words(*finding.cure, report.name_of(finding.cure->command)))
+                      : "none of a single item"});
   }
   return html + "</table>\n";
 }
 
 std::string minutes(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%d:%02d", int(std::lround(seconds)) / 60,
-                int(std::lround(seconds)) % 60);
-  return std::isfinite(seconds) ? text : "–";
+  if (!std::isfinite(seconds)) {
+    return "–";
+  }
+  const long whole = std::lround(seconds);
+  const std::string rest = std::to_string(whole % 60);
+  return std::to_string(whole / 60) + ":" + (rest.size() < 2 ? "0" : "") + rest;
 }
 
-std::string legs(const PlanReport& report, const Request& request,
-                 const std::vector<double>& arrivals) {
-  const Route& route = report.imported.route;
-  std::string html = "<h2>Legs</h2>\n<table>\n" +
-                     row({"from", "to", "which is at", "length, m", "lowest above ground, m",
+std::string parts(const PlanReport& report, const Request& request) {
+  std::string html = "<h2>Parts of the flight</h2>\n<table>\n" +
+                     row({"way", "which ends at", "length, m", "lowest above ground, m",
                           "highest above ground, m", "time, min", "verdict"},
                          "th");
-  for (std::size_t i = 0; i < route.leg_count(); ++i) {
-    const auto [lowest, highest] = leg_heights(route.leg(i), *request.world);
-    const bool fails =
-        std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
-          return finding.items.size() == 2 && finding.violation.at == i;
-        });
-    html +=
-        row({xml_text(report.name_of(i)), xml_text(report.name_of(i + 1)),
-             place_in_words(route[i + 1], request), metres(route.leg(i).length()), metres(lowest),
-             metres(highest), i + 1 < arrivals.size() ? minutes(arrivals[i + 1]) : "",
-             fails ? "fails" : "valid"});
-  }
-  for (const Passage& passage : report.passages) {
-    const bool fails =
-        std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
-          return finding.items == std::vector{passage.item} &&
-                 finding.violation.constraint == (passage.is_climb ? "climb" : "descent");
-        });
-    const Vec3& end = passage.is_climb ? passage.top : passage.foot;
-    html += row({passage.is_climb ? "the ground" : "above", xml_text(passage.item),
-                 place_in_words(end, request), metres((passage.top - passage.foot).norm()), "", "",
-                 "", fails ? "fails" : "valid"});
+  for (const ReportedPart& part : report.parts) {
+    html += row({xml_text(joined(part.items) + (part.what.empty() ? "" : ": " + part.what)),
+                 place_in_words(part.end, request), metres(part.length_m),
+                 metres(part.heights.lowest), metres(part.heights.highest),
+                 minutes(part.time.min_s) + " to " + minutes(part.time.max_s),
+                 part.fails ? "fails" : "valid"});
   }
   return html + "</table>\n";
 }
 
-/// The numbers of the items, or of the points where the file numbers nothing.
-std::vector<std::string> labels_of(const PlanReport& report) {
-  std::vector<std::string> labels;
-  for (std::size_t i = 0; i < report.imported.route.size(); ++i) {
-    const auto& items = report.imported.items;
-    const int number = i < items.size() ? items[i].number : 0;
-    labels.push_back(std::to_string(number > 0 ? std::size_t(number) : i + 1));
+/// The parameters that decided, and where they come from.
+std::string parameters(const PlanReport& report) {
+  std::string html;
+  for (const Parameters::Used& used : report.parameters) {
+    html += row({xml_text(used.name), rounded_text(used.value, 3),
+                 used.is_given ? "parameter file" : "the autopilot's default"});
   }
-  return labels;
+  return html.empty() ? ""
+                      : "<h2>Parameters of the autopilot</h2>\n<table>\n" + html + "</table>\n";
 }
 
 /// "value 31.2 m, limit 60 m, layer fence, zone hospital", as far as there are any.
@@ -129,6 +113,17 @@ std::string figures_of(const Finding& finding) {
   return text;
 }
 
+/// The numbers of the items, or of the points where the file numbers nothing.
+std::vector<std::string> labels_of(const PlanReport& report) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < report.imported.route.size(); ++i) {
+    const auto& items = report.imported.items;
+    const int number = i < items.size() ? items[i].number : 0;
+    labels.push_back(std::to_string(number > 0 ? std::size_t(number) : i + 1));
+  }
+  return labels;
+}
+
 std::string suite(const std::string& counts, const std::string& cases) {
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + counts +
          ">\n  <testsuite name=\"altiplan check\"" + counts + ">\n" + cases +
@@ -145,8 +140,7 @@ std::string list(const std::vector<std::string>& notes) {
 }  // namespace
 
 std::string place_in_words(const Vec3& p, const Request& request) {
-  char height[48];
-  std::snprintf(height, sizeof height, "%.1f m above sea level", p.z());
+  const std::string height = with_decimals(p.z(), 1) + " m above sea level";
   if (!request.world->frame().has_position()) {
     return place(p);
   }
@@ -154,73 +148,65 @@ std::string place_in_words(const Vec3& p, const Request& request) {
   return in_degrees(lat, 'N', 'S') + ", " + in_degrees(lon, 'E', 'W') + ", " + height;
 }
 
-std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis,
-                        const std::vector<double>& arrivals) {
+std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis) {
   Request request = world.request;
   request.world = std::make_shared<const World>(world.truth);
-  const std::string verdict = report.passed() ? "pass" : "fail";
+  const std::string verdict = word_of(report.verdict());
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>" +
                      verdict + ": " + xml_text(report.file) + "</title><style>" + kStyle +
-                     "</style></head>\n<body>\n" + "<h1><span class=\"" + verdict + "\">" +
-                     verdict + "</span>: " + xml_text(report.file) + "</h1>\n<table>\n";
+                     "</style></head>\n<body>\n" + "<h1><span class=\"" +
+                     (report.passed() ? "pass" : "fail") + "\">" + verdict +
+                     "</span>: " + xml_text(report.file) + "</h1>\n<table>\n";
   for (const auto& [what, value] : basis) {
     html += row({xml_text(what), xml_text(value)});
   }
   const Measures& measures = report.measures;
   html += row({"route", counted(measures.waypoints, "waypoint") + ", " + metres(measures.length_m) +
-                            " m, " + report.height_in_words() + ", " +
-                            metres(measures.min_clearance_m) + " m from obstacles"});
+                            " m, " + report.height_in_words() + ", " + time_in_words(report.time) +
+                            ", " + metres(measures.min_clearance_m) + " m from obstacles"});
   html += "</table>\n" + violations(report, request);
   html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);
   html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);
-  return html + legs(report, request, arrivals) + list(report.notes) + "</body>\n</html>\n";
+  return html + parts(report, request) + parameters(report) + list(report.notes) +
+         "</body>\n</html>\n";
 }
 
 std::string junit(const PlanReport& report) {
-  const Route& route = report.imported.route;
   std::string cases;
   std::size_t count = 0;
   std::size_t failed = 0;
+  std::vector<bool> is_told(report.findings.size());
   const auto add = [&](const std::string& name, const auto& is_here) {
     std::string failures;
-    for (const Finding& finding : report.findings) {
-      if (is_here(finding)) {
-        std::string words = finding.violation.message;
-        if (finding.cure) {
-          words += "; cure: " + in_words(*finding.cure, report.name_of(finding.cure->waypoint));
-        }
-        failures += "      <failure type=\"" + xml_text(finding.violation.constraint) +
-                    "\" message=\"" + xml_text(words) + "\">" + xml_text(figures_of(finding)) +
-                    "</failure>\n";
+    for (std::size_t n = 0; n < report.findings.size(); ++n) {
+      const Finding& finding = report.findings[n];
+      if (is_told[n] || !is_here(finding)) {
+        continue;
       }
+      is_told[n] = true;
+      std::string words = finding.violation.message;
+      if (finding.cure) {
+        words += "; cure: " + in_words(*finding.cure, report.name_of(finding.cure->command));
+      }
+      failures += "      <failure type=\"" + xml_text(finding.violation.constraint) +
+                  "\" message=\"" + xml_text(words) + "\">" + xml_text(figures_of(finding)) +
+                  "</failure>\n";
     }
     ++count;
     failed += failures.empty() ? 0 : 1;
     cases += "    <testcase classname=\"" + xml_text(report.file) + "\" name=\"" + xml_text(name) +
              (failures.empty() ? "\"/>\n" : "\">\n" + failures + "    </testcase>\n");
   };
-  const auto is_of_route = [](const Finding& finding) {
-    const std::string& rule = finding.violation.constraint;
-    return rule != "climb" && rule != "descent" && rule != "not_judged" && rule != "home" &&
-           rule != "rally";
-  };
-  for (std::size_t i = 0; i < route.leg_count(); ++i) {
-    const bool is_last = i + 1 == route.leg_count();  // has what concerns the last waypoint or all
-    add(report.name_of(i) + " to " + report.name_of(i + 1), [&](const Finding& finding) {
-      const std::size_t at = finding.violation.at;
-      return is_of_route(finding) && (at == i || (is_last && at > i));
+  for (const ReportedPart& part : report.parts) {
+    const std::string what = part.what.empty() ? "" : ": " + part.what;
+    add(joined(part.items) + what, [&](const Finding& finding) {
+      return finding.items == part.items && finding.what == part.what;
     });
   }
-  for (const Passage& passage : report.passages) {
-    const std::string what = passage.is_climb ? "climb" : "descent";
-    add(what + " of " + passage.item,
-        [&](const Finding& finding) { return finding.violation.constraint == what; });
-  }
-  for (const std::string& point : report.rally) {
-    add(point, [&](const Finding& finding) { return finding.items == std::vector{point}; });
-  }
-  for (const char* whole : {"not_judged", "home"}) {
-    add(whole, [&](const Finding& finding) { return finding.violation.constraint == whole; });
+  for (const Finding& finding : report.findings) {
+    if (!is_told[std::size_t(&finding - report.findings.data())]) {
+      add(joined(finding.items), [&](const Finding& other) { return &other == &finding; });
+    }
   }
   const std::string counts =
       " tests=\"" + std::to_string(count) + "\" failures=\"" + std::to_string(failed) + "\"";

@@ -17,12 +17,10 @@ using Basis = std::vector<std::pair<std::string, std::string>>;
 std::string place_in_words(const Vec3& p, const Request& request);
 
 /// The verdict as a page of HTML without scripts: what it rests on, the violations with their
-/// cures, a map, the height profile, and heights leg by leg. `arrivals`: seconds from take-off to
-/// each waypoint of the route, as far as known.
-std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis,
-                        const std::vector<double>& arrivals);
+/// cures, a map, the height profile, and the parts of the flight with heights and times.
+std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis);
 
-/// The verdict as JUnit XML: one test case a leg, climb, descent and rally point.
+/// The verdict as JUnit XML: one test case a part of the flight, and one for each other finding.
 std::string junit(const PlanReport& report);
 /// The same where there is no verdict.
 std::string junit_of_error(const std::string& file, const std::string& message);

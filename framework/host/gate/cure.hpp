@@ -1,40 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "altiplan/check.hpp"
+#include "host/autopilot/flown_mission.hpp"
+#include "host/gate/band_judge.hpp"
 
 namespace altiplan::host {
 
-/// A change of a waypoint: of its height, or of its place in plan.
+/// A change of a command: of its height, or of its place in plan.
 struct Cure {
-  std::size_t waypoint = 0;
+  std::size_t command = 0;
   Vec3 by{0, 0, 0};  ///< metres; its length is a multiple of 0.1 m
 };
-
-/// What moves with what.
-struct Bonds {
-  /// Waypoints whose heights are given above the ground: moved aside, they follow it. Empty: none.
-  std::vector<bool> follows_ground{};
-  /// The last waypoint is at the height of the one before it, as where a landing is flown to, and
-  /// its place is given.
-  bool last_is_led = false;
-};
-
-/// The least change of one waypoint's height or, where none helps, the least shift toward one of 16
-/// directions, of at most 1,000 m, with which the violated leg and the other leg at that waypoint
-/// are valid; none if there is none, or the route has turns.
-std::optional<Cure> cure(const Route& route, const Violation& violation, const Request& request,
-                         const Bonds& bonds);
 
 /// "raise mission.items.7 by 12.4 m", "move line 5 by 30.1 m to the north-east"
 std::string in_words(const Cure& cure, const std::string& item);
 
-/// The route with heights and places changed until it is valid, by cures of single waypoints and
-/// by raising or lowering both ends of a leg, each by at most 1,000 m; none where that fails.
-std::optional<Route> cured(const Route& route, const Request& request, const Bonds& bonds);
+/// How a mission is flown, by each who may fly it.
+using Fly = std::function<std::vector<FlownMission>(const formats::MissionFile&)>;
+
+/// Searches for changes of a mission with which it can be flown: each change is flown as a whole,
+/// and the parts that it concerns are judged.
+class Cures {
+ public:
+  Cures(const formats::MissionFile& plan, const World& world, Fly fly, const BandJudge& judge)
+      : plan_(plan), world_(world), fly_(std::move(fly)), judge_(judge) {}
+
+  /// The least change of one command's height or, where none helps, the least shift toward one of
+  /// 16 directions, of at most 1,000 m, with which the way from `before` to `command`, and what
+  /// is flown to and from the changed command, is valid; none if there is none, or the time that a
+  /// search may take is over.
+  std::optional<Cure> find(std::size_t before, std::size_t command);
+  bool is_exhausted() const { return work_ > kMaxWork; }
+
+  /// The mission changed until it is valid, by cures of single commands and by raising or lowering
+  /// both ends of a way; none where that fails.
+  std::optional<formats::MissionFile> cured();
+
+ private:
+  static constexpr double kMaxWork = 1e5;  ///< strips judged: about a second
+
+  formats::MissionFile changed(const std::vector<Cure>& changes) const;
+  /// True if, so changed, the way is valid, and with `all` what is flown to and from each change.
+  bool is_valid(const std::vector<Cure>& changes, std::size_t before, std::size_t command,
+                bool all);
+  std::optional<std::vector<Cure>> least_change(std::size_t before, std::size_t command, bool both,
+                                                const std::vector<Vec3>& directions);
+  std::optional<std::vector<Cure>> of_one(std::size_t before, std::size_t command);
+
+  formats::MissionFile plan_;
+  const World& world_;
+  Fly fly_;
+  const BandJudge& judge_;
+  double work_ = 0;
+};
 }  // namespace altiplan::host

@@ -1,61 +1,107 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "altiplan/measures.hpp"
+#include "host/autopilot/flown_mission.hpp"
 #include "host/gate/cure.hpp"
-#include "host/gate/flown_parts.hpp"
 #include "host/import_export/imported_route.hpp"
 
 namespace altiplan::host {
 
-/// A violation as the author of a mission sees it.
+enum class Verdict { pass, fail, not_judged };
+
+/// What is wrong with a mission, as its author sees it.
 struct Finding {
-  Violation violation;
-  std::vector<std::string> items;  ///< as ground stations name them: one, or the two of a leg
-  std::optional<Vec3> at;          ///< where it is worst, within a metre, if anywhere
-  std::optional<Cure> cure;        ///< of one waypoint
+  Violation violation;             ///< its constraint is the rule
+  std::vector<std::string> items;  ///< as ground stations name them: one, or the two of a way
+  std::string what{};              ///< of the part of the flight, "" for a way between two items
+  int item = 0;                    ///< the number of the last of them; 0: the format has none
+  std::optional<Vec3> at{};        ///< where it is worst, within a metre, if anywhere
+  std::optional<Cure> cure{};      ///< of one item
   std::string zone{};              ///< name of the violated layer's part, "" if it has none
   bool is_over_void = false;       ///< there the elevation model has no height
+  bool is_unjudged = false;        ///< nothing is known to be wrong
 };
+
+/// A part of a flight, for tables.
+struct ReportedPart {
+  std::vector<std::string> items;  ///< one, or the two of a way
+  std::string what;                ///< "its circle"; "" for the way between two items
+  Vec3 end{0, 0, 0};
+  double length_m = 0;
+  LegHeights heights;
+  TimeSpan time;  ///< of its end, from the beginning of the flight
+  bool fails = false;
+};
+
+/// The verdict on a mission of a ground station.
+struct PlanReport {
+  std::string file;
+  ImportedRoute imported;  ///< as drawn, for maps and profiles
+  std::vector<formats::MissionCommand> commands;
+  std::vector<formats::Autopilot> autopilots;  ///< those that may fly it; none: judged as drawn
+  std::vector<Parameters::Used> parameters;    ///< that mattered
+  std::vector<Finding> findings;               ///< none: passed
+  std::vector<ReportedPart> parts;             ///< flown by the first of the autopilots
+  TimeSpan time;                               ///< by any of them
+  double lowest_m = kInfinity;                 ///< above ground, but where it takes off and lands
+  Measures measures;
+  std::vector<std::string> notes;  ///< how the file and the world were read
+
+  Verdict verdict() const;
+  bool passed() const { return findings.empty(); }
+  /// Of a command.
+  std::string name_of(std::size_t command) const;
+  /// Of a point of the drawn route: "item 3 (waypoint)", "point 3" where the file numbers nothing,
+  /// "waypoint 3" where the route has other points than the file.
+  std::string name_of_point(std::size_t waypoint) const;
+  /// "at least 52.4 m above ground", of the flight.
+  std::string height_in_words() const;
+};
+
+/// "pass", "fail", "not judged"
+const char* word_of(Verdict verdict);
+
+/// "7 to 8 min"; "8 min or more" where nothing ends it.
+std::string time_in_words(const TimeSpan& time);
 
 inline constexpr double kHomeTolerance = 10;  ///< metres
 /// A ground at least as high stands for a void of the elevation model, which is closed.
 inline constexpr double kUnknownGround = 9'000;
 
-/// The verdict on a mission of a ground station.
-struct PlanReport {
-  std::string file;
-  ImportedRoute imported;
-  std::vector<Passage> passages;
-  std::vector<Way> ways;
-  std::vector<std::string> rally;  ///< names of the rally points: "rally point 1"
-  std::vector<Finding> findings;   ///< none: passed
-  Measures measures;
-  std::vector<std::string> notes;  ///< how the file and the world were read
-
-  bool passed() const { return findings.empty(); }
-  /// "item 3 (waypoint)" as ground stations number it, "point 3" where the file numbers nothing,
-  /// "waypoint 3" where the route has other points than the file.
-  std::string name_of(std::size_t waypoint) const;
-  Bonds bonds() const;
-  /// "at least 52.4 m above ground", of the route.
-  std::string height_in_words() const;
-};
-
 /// Throws Error, beginning with `file`, naming what a mission without a route holds instead.
 void expect_route(const std::string& file, const formats::MissionFile& plan);
 
-/// Judges the mission's route and, by the layers but the ground, its climb from home and its
-/// descent to land. A landing that is not below the item before it, and a return at the end, are
-/// flown to at that item's height, a landing by an aeroplane straight down to the ground. The way
-/// from home and whole circles of loiters are judged as legs, and rally points as places. Other
-/// commands that fly somewhere, and heights relative to a home that is more than kHomeTolerance off
-/// the ground, are findings. Throws Error for a mission wholly beside the ground. With `own_ends`
-/// the route need not begin and end where the world's scenario says. Messages begin with `file`.
+/// The world as it is from one time of the flight to another, in seconds.
+using WorldDuring = std::function<Mission(double, double)>;
+
+/// Who may fly it, as far as the user says.
+struct GateOptions {
+  std::optional<formats::Firmware> firmware{};
+  std::optional<formats::Airframe> airframe{};
+  FlightOptions flight{};
+  double drawn_mps = 5;        ///< speed along drawn lines
+  WorldDuring world_during{};  ///< none: it is the same all the time
+  bool own_ends = true;        ///< the route need not begin and end where the world's scenario says
+};
+
+/// Seconds of the flight, without a world: heights above ground count from home.
+TimeSpan estimated_time(const formats::MissionFile& plan, const GateOptions& options);
+
+/// Judges a mission as the autopilots that may fly it do: every part of the flight, the whole band
+/// that its parameters allow. A file without commands (KML, GPX, GeoJSON) is judged as drawn,
+/// unless the options name an autopilot. What autopilots refuse, heights relative to a home that is
+/// more than kHomeTolerance off the ground, and what is not modelled are findings. Throws Error for
+/// a mission wholly beside the ground; messages begin with `file`.
 PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
-                      const Mission& world, bool own_ends);
+                      const Mission& world, const GateOptions& options);
+
+/// The mission changed until it passes; none where that fails.
+std::optional<formats::MissionFile> cured_plan(const formats::MissionFile& plan,
+                                               const Mission& world, const GateOptions& options);
 }  // namespace altiplan::host

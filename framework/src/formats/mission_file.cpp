@@ -18,7 +18,7 @@ namespace {
 constexpr double kMaxAltitude = 100'000;
 constexpr double kMaxRadius = 100'000;  // of a circle
 constexpr double kMaxTurns = 1000;      // more than an autopilot stores
-/// NAV_SPLINE_WAYPOINT, reached on a curve through its neighbours that autopilots lay differently.
+/// Reached on a curve through its neighbours that autopilots lay differently.
 constexpr int kSpline = 82;
 
 std::string number_text(double value) {
@@ -27,52 +27,45 @@ std::string number_text(double value) {
   return text;
 }
 
-/// The item kind of a MAV_CMD, none for a command that is no position on the route. DO_LAND_START
-/// (189) carries a position, but marks where landing begins and is not flown to.
-std::optional<MissionItem::Kind> kind_of(int command) {
+/// The item kind of a command, none for one that is no position on the route. A landing start
+/// carries a position, but marks where landing begins and is not flown to.
+std::optional<MissionItem::Kind> kind_of(Task task) {
   using Kind = MissionItem::Kind;
-  switch (command) {
-    case 16:  // NAV_WAYPOINT
-    case kSpline:
+  switch (task) {
+    case Task::waypoint:
+    case Task::spline:
       return Kind::waypoint;
-    case 17:  // NAV_LOITER_UNLIM
-    case 18:  // NAV_LOITER_TURNS
-    case 19:  // NAV_LOITER_TIME
-    case 31:  // NAV_LOITER_TO_ALT
+    case Task::loiter_forever:
+    case Task::loiter_turns:
+    case Task::loiter_time:
+    case Task::loiter_to_altitude:
       return Kind::loiter;
-    case 22:  // NAV_TAKEOFF
-    case 84:  // NAV_VTOL_TAKEOFF
+    case Task::take_off:
+    case Task::vtol_take_off:
       return Kind::takeoff;
-    case 21:  // NAV_LAND
-    case 85:  // NAV_VTOL_LAND
+    case Task::land:
+    case Task::vtol_land:
       return Kind::land;
     default:
       return std::nullopt;
   }
 }
 
-/// True for a command that flies the vehicle somewhere, but to no position that it gives.
+/// True for a command that flies the vehicle somewhere, but to no position of its own.
 bool moves_vehicle(int command) {
-  switch (command) {
-    case MissionMove::kReturn:
-    case 23:   // NAV_LAND_LOCAL
-    case 24:   // NAV_TAKEOFF_LOCAL
-    case 25:   // NAV_FOLLOW
-    case 30:   // NAV_CONTINUE_AND_CHANGE_ALT
-    case 32:   // DO_FOLLOW
-    case 33:   // DO_FOLLOW_REPOSITION
-    case 34:   // DO_ORBIT
-    case 35:   // DO_FIGURE_EIGHT
-    case 36:   // NAV_ARC_WAYPOINT
-    case 81:   // NAV_PATHPLANNING
-    case 83:   // NAV_ALTITUDE_WAIT
-    case 92:   // NAV_GUIDED_ENABLE
-    case 94:   // NAV_PAYLOAD_PLACE
-    case 176:  // DO_SET_MODE
-    case 177:  // DO_JUMP
-    case 192:  // DO_REPOSITION
-    case 601:  // DO_JUMP_TAG
+  const CommandTask& row = command_task(command);
+  constexpr std::array kPositions{23, 24, 25, 32, 33, 34, 35, 81, 176, 192};
+  switch (row.task) {
+    case Task::return_home:
+    case Task::change_altitude:
+    case Task::arc:
+    case Task::payload_place:
+    case Task::jump:
+    case Task::jump_to_tag:
       return true;
+    case Task::other:  // known to no autopilot, or decided by another program
+      return row.number > 0 ||
+             std::find(kPositions.begin(), kPositions.end(), command) != kPositions.end();
     default:
       return false;
   }
@@ -106,24 +99,6 @@ MissionFile read_json_mission(const std::string& file, const std::string& text) 
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }
-}
-
-/// Seconds spent at a waypoint, or in a loiter of a given time.
-double hold_of(const CommandList::Command& command) {
-  constexpr int kForever = 17;
-  const bool holds = (command.number == 16 || command.number == 19) && command.params[0] > 0;
-  return command.number == kForever ? kInfinity : holds ? command.params[0] : 0;
-}
-
-/// The radius that a loiter's parameters give; 0: none, or beyond kMaxRadius.
-double loiter_radius_of(const CommandList::Command& command) {
-  const double radius = std::abs(command.params[command.number == 31 ? 1 : 2]);
-  return radius > 0 && radius <= kMaxRadius ? radius : 0;
-}
-
-/// Full circles of a loiter, which take time that its speed tells.
-double turns_of(const CommandList::Command& command) {
-  return command.number == 18 && command.params[0] > 0 ? std::min(command.params[0], kMaxTurns) : 0;
 }
 
 bool is_nowhere(double lon, double lat) {
@@ -182,14 +157,10 @@ void check_volume(ZoneVolume& volume) {
   }
 }
 
-MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kind) const {
+MissionPoint CommandList::place_of(const MissionCommand& command) const {
   MissionPoint at{command.lon, command.lat, command.altitude_m, frame_of(command.frame)};
   if (is_nowhere(at.lon, at.lat)) {
     // Autopilots take off, loiter and land at the vehicle's current position.
-    if (kind == MissionItem::Kind::waypoint) {
-      throw Error("a waypoint needs a position, found longitude " + number_text(at.lon) +
-                  " and latitude " + number_text(at.lat));
-    }
     const MissionPoint* here = !mission_.items.empty() ? &mission_.items.back().at
                                : mission_.home         ? &*mission_.home
                                                        : nullptr;
@@ -204,33 +175,13 @@ MissionPoint CommandList::place_of(const Command& command, MissionItem::Kind kin
   return at;
 }
 
-bool CommandList::take(const Command& command) {
-  constexpr int kDelay = 93;
-  constexpr int kConditionDelay = 112;
-  constexpr int kChangeSpeed = 178;
-  const auto& params = command.params;
-  if (command.number == kChangeSpeed) {
-    constexpr double kDefault = -2;
-    constexpr double kFastest = 1000;
-    const bool is_speed = params[0] == 0 || params[0] == 1;  // through the air, over the ground
-    if (is_speed && (params[1] == kDefault || (params[1] > 0 && params[1] <= kFastest))) {
-      speed_mps_ = std::max(params[1], 0.0);
-    }
-    return true;
+void CommandList::add(const MissionCommand& command) {
+  mission_.commands.push_back(command);
+  const Task task = command_task(command.number).task;
+  if (task == Task::speed || task == Task::delay || task == Task::condition) {
+    return;  // says how the others are flown
   }
-  if (command.number == kDelay || command.number == kConditionDelay) {
-    const double hold = params[0] >= 0 ? params[0] : kInfinity;  // until a time of day
-    (mission_.items.empty() ? hold_s_ : mission_.items.back().hold_s) += hold;
-    return true;
-  }
-  return false;
-}
-
-void CommandList::add(const Command& command) {
-  if (take(command)) {
-    return;
-  }
-  const auto kind = kind_of(command.number);
+  const auto kind = kind_of(task);
   if (!kind) {
     if (moves_vehicle(command.number)) {
       mission_.moves.push_back(
@@ -243,16 +194,18 @@ void CommandList::add(const Command& command) {
     }
     return;
   }
-  const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
-  MissionItem item{*kind, place_of(command, *kind), acceptance, command.place,
-                   circle_of(command.number, command.params)};
-  item.speed_mps = speed_mps_;
-  item.hold_s = hold_of(command) + std::exchange(hold_s_, 0.0);
-  item.number = command.item;
-  if (*kind == MissionItem::Kind::loiter) {
-    item.loiter_m = loiter_radius_of(command);
-    item.turns = turns_of(command);
+  if (*kind == MissionItem::Kind::waypoint && is_nowhere(command.lon, command.lat)) {
+    if (mission_.route_problem.empty()) {
+      mission_.route_problem = command.place + ": a waypoint needs a position, found longitude " +
+                               number_text(command.lon) + " and latitude " +
+                               number_text(command.lat);
+    }
+    return;  // what an autopilot does then is for those who judge commands
   }
+  const double acceptance = command.number == 16 && command.params[1] > 0 ? command.params[1] : 0;
+  MissionItem item{*kind, place_of(command), acceptance, command.place,
+                   circle_of(command.number, command.params)};
+  item.number = command.item;
   mission_.items.push_back(std::move(item));
   if (command.number == kSpline) {
     mission_.moves.push_back({kSpline, command.place, command.item, mission_.items.size()});
@@ -261,6 +214,8 @@ void CommandList::add(const Command& command) {
 
 void CommandList::skip_complex(const std::string& place) {
   ++complex_;
+  mission_.commands.push_back({});
+  mission_.commands.back().place = place;
   mission_.moves.push_back({0, place, 0, mission_.items.size()});
 }
 

@@ -37,35 +37,19 @@ void check_volume(ZoneVolume& volume);
 /// Mission commands in the numbering of the autopilots, one after the other.
 class CommandList {
  public:
-  struct Command {
-    int number = 0;
-    int frame = 0;
-    std::array<double, 4> params{};
-    double lon = 0;  ///< both 0, or not finite: the vehicle's position at that time
-    double lat = 0;
-    double altitude_m = 0;
-    std::string place;
-    int item = 0;  ///< MissionItem::number
-  };
-
   explicit CommandList(MissionFile& mission) : mission_(mission) {}
   /// Adds the item of the command, if it is a position to fly to. Throws Error for an invalid
   /// position.
-  void add(const Command& command);
+  void add(const MissionCommand& command);
   void skip_complex(const std::string& place);
   void take_complex(std::size_t items) { taken_ += items; }
   /// Adds the notes on skipped commands.
   void finish();
 
  private:
-  MissionPoint place_of(const Command& command, MissionItem::Kind kind) const;
-
-  /// True for a command that says how the others are flown.
-  bool take(const Command& command);
+  MissionPoint place_of(const MissionCommand& command) const;
 
   MissionFile& mission_;
-  double speed_mps_ = 0;
-  double hold_s_ = 0;  ///< before the first position
   std::size_t moves_ = 0;
   std::set<int> moves_numbers_;
   std::size_t skipped_ = 0;

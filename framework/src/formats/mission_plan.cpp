@@ -22,14 +22,14 @@ void read_simple_item(const Node& item, CommandList& commands) {
   if (places.size() != first + 3) {
     places.wrong("[latitude, longitude, altitude]");
   }
-  CommandList::Command command;
+  MissionCommand command;
   for (std::size_t n = 0; n < expected; ++n) {
     const double value = params.at(n).number_or_nan();
     if (n < command.params.size()) {
       command.params[n] = value;
     }
   }
-  item.at("autoContinue").boolean();
+  command.auto_continue = item.at("autoContinue").boolean();
   command.number = item.at("command").whole(65535);
   command.frame = item.at("frame").whole(21);
   command.lat = places.at(first).number_or_nan();
@@ -158,12 +158,10 @@ MissionFile read_plan(const Node& root) {
   mission.format = MissionFile::Format::qgc_plan;
   const Node body = root.at("mission");
   body.at("version").expect_version(2, 2);
-  constexpr int kAeroplane = 1;  // MAV_TYPE_FIXED_WING
-  const double cruise = body.at("cruiseSpeed").number();
-  const double hover = body.at("hoverSpeed").number();
-  body.at("firmwareType").whole(255);
-  mission.is_wing = body.at("vehicleType").whole(255) == kAeroplane;
-  mission.speed_mps = mission.is_wing ? cruise : hover;
+  mission.firmware = body.at("firmwareType").whole(255);
+  mission.vehicle_type = body.at("vehicleType").whole(255);
+  mission.cruise_mps = body.at("cruiseSpeed").number();
+  body.at("hoverSpeed").number();
   const Node home = body.at("plannedHomePosition");
   if (home.size() != 3) {
     home.wrong("[latitude, longitude, altitude]");

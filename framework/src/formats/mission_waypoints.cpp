@@ -230,7 +230,8 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
                     row.lat(),
                     row.altitude(),
                     "line " + std::to_string(line),
-                    int(number)});
+                    int(number),
+                    row.whole(11, 1) == 1});
     }
     ++number;
   };

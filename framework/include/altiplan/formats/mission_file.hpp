@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/formats/mission_commands.hpp"
 #include "altiplan/formats/zone.hpp"
 
 /// \file Missions of ground stations in one representation: QGroundControl's `.plan`, the `QGC WPL
@@ -41,12 +42,8 @@ struct MissionItem {
   std::string place;        ///< position in the file, for messages: "mission.items.3", "line 5"
   /// Of a loiter whose radius the file gives, and which is left along a tangent or never.
   std::optional<MissionCircle> circle{};
-  double speed_mps = 0;  ///< on the way to it, from the commands before; 0: as the vehicle's
-  double hold_s = 0;     ///< spent there; infinite where nothing ends it, or a time of day does
-  double loiter_m = 0;   ///< radius of a loiter of any kind; 0 where the file gives none
-  double turns = 0;      ///< full circles of a loiter
+  double speed_mps = 0;  ///< on the way to it, of a mission that is written; 0: the vehicle's
   int number = 0;        ///< as ground stations show it; 0: the format numbers nothing
-  bool returns = false;  ///< a landing at home, after a return to launch
 };
 
 /// A command that moves the vehicle otherwise than to a position: a return, a jump, a scan.
@@ -62,9 +59,11 @@ struct MissionFile {
   enum class Format { qgc_plan, waypoints, kml, gpx, geojson };
   Format format = Format::qgc_plan;
   std::string name;
-  std::optional<MissionPoint> home;  ///< above sea level
-  double speed_mps = 0;              ///< of the vehicle; 0 where the file gives none
-  bool is_wing = false;              ///< true if the file says that it is an aeroplane
+  std::optional<MissionPoint> home;      ///< above sea level
+  int firmware = 0;                      ///< MAV_AUTOPILOT; 0: not said
+  int vehicle_type = 0;                  ///< MAV_TYPE; 0: not said
+  double cruise_mps = 0;                 ///< of an aeroplane, as the file has it
+  std::vector<MissionCommand> commands;  ///< all items, of `.plan` and `.waypoints`
   std::vector<MissionItem> items;
   std::vector<MissionMove> moves;  ///< not part of the items
   std::string route_problem;       ///< why the items are not a route, "" where they are

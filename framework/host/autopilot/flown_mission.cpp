@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+
+using formats::Airframe;
+using formats::MissionCommand;
+using formats::Task;
+using Weight = Remark::Weight;
+
+namespace {
+
+constexpr int kMaxSteps = 100'000;
+}  // namespace
+
+FlownMission Walker::fly() {
+  place_home();
+  if (check_upload(commands_, flight_)) {
+    walk();
+  }
+  mission_.parameters = parameters_.used();
+  return std::move(mission_);
+}
+
+Eigen::Vector2d Walker::to_local(double lon, double lat) const {
+  const auto [x, y] = world_.frame().to_local(lon, lat);
+  return {x, y};
+}
+
+void Walker::place_home() {
+  if (plan_.home) {
+    home_ = to_local(plan_.home->lon, plan_.home->lat);
+    home_z_ = plan_.home->altitude_m;
+  } else {
+    for (std::size_t n = 0; n < commands_.size(); ++n) {
+      if (commands_[n].has_position()) {
+        home_ = to_local(commands_[n].lon, commands_[n].lat);
+        break;
+      }
+    }
+    home_z_ = flight_.ground(home_);
+  }
+  flight_.home_ground = home_z_;
+}
+
+Eigen::Vector2d Walker::here() const {
+  return is_winged_ ? wing_->mean_place() : hover_ ? hover_->at : home_;
+}
+
+bool Walker::keeps_height(const MissionCommand& command) const {
+  const Task task = formats::command_task(command.number).task;
+  return !is_px4() && autopilot_.is_copter() && command.altitude_m == 0 &&
+         (task == Task::waypoint || task == Task::loiter_forever || task == Task::loiter_turns ||
+          task == Task::loiter_time || task == Task::spline || task == Task::arc);
+}
+
+Destination Walker::destination(std::size_t n) const {
+  const MissionCommand& command = commands_[n];
+  Destination to;
+  to.at = command.has_position() ? to_local(command.lon, command.lat) : here();
+  if (keeps_height(command)) {
+    to.low = low();
+    to.high = high();
+    return to;
+  }
+  if (formats::is_above_ground(command.frame)) {
+    const std::optional<double> ground = world_.ground(to.at.x(), to.at.y());
+    if (!ground && world_.has_ground()) {
+      throw Error(name_of_command(command) +
+                  ": its altitude is above ground, and the world has no ground there");
+    }
+    to.above_ground = command.altitude_m;
+    to.low = to.high = flight_.ground(to.at) + command.altitude_m;
+    return to;
+  }
+  if (!formats::is_of_home(command.frame)) {
+    to.low = to.high = command.altitude_m;
+    return to;
+  }
+  if (!plan_.home && !has_new_home_) {
+    throw Error(name_of_command(command) +
+                ": its altitude is relative to home, and the file has no home position");
+  }
+  to.low = to.high = home_z_ + command.altitude_m;
+  if (former_home_z_) {
+    to.low = std::min(to.low, *former_home_z_ + command.altitude_m);
+    to.high = std::max(to.high, *former_home_z_ + command.altitude_m);
+  }
+  return to;
+}
+
+std::optional<Destination> Walker::next_destination(std::size_t n) const {
+  const auto next = commands_.next_position(n);
+  return next ? std::optional(destination(*next)) : std::nullopt;
+}
+
+void Walker::walk() {
+  std::size_t n = 0;
+  bool ends = false;
+  for (int steps = 0; n < commands_.size() && !ends; ++steps) {
+    if (steps == kMaxSteps) {
+      flight_.remark(Weight::not_judged, "not_judged", n, "the flight has too many steps");
+      return;
+    }
+    if (!commands_.is_done(n)) {
+      ++n;
+      continue;
+    }
+    if (commands_.is_jump(n)) {
+      const std::optional<std::size_t> next = commands_.after_jump(n);
+      if (!next) {
+        flight_.remark(Weight::note, "never_ends", n, "jumps back for ever: the flight has no end");
+        flight_.take({kInfinity, kInfinity});
+        return;
+      }
+      n = *next;
+      continue;
+    }
+    ends = carry_out(n);
+    ++n;
+  }
+  if (ends && n < commands_.size()) {
+    note_unflown(n);
+  }
+  if (!ends && n == commands_.size() && has_flown_) {
+    finish();
+  }
+}
+
+void Walker::note_unflown(std::size_t n) {
+  for (; n < commands_.size(); ++n) {
+    if (formats::flies_to_position(task_of(n))) {
+      flight_.remark(Weight::note, "not_flown", n, "is not flown: the flight ends before it");
+      return;
+    }
+  }
+}
+
+bool Walker::carry_out(std::size_t n) {
+  const Task task = task_of(n);
+  const auto& p = commands_[n].params;
+  switch (task) {
+    case Task::take_off:
+    case Task::vtol_take_off:
+      return take_off(n);
+    case Task::return_home:
+      return_home(n);
+      return true;
+    case Task::delay:
+      return delay(n);
+    case Task::condition:
+      is_pending_ = true;
+      return false;
+    case Task::speed:
+      change_speed(n);
+      return false;
+    case Task::set_home:
+      set_home(n);
+      return false;
+    case Task::parachute:
+      if (p[0] == 2) {
+        flight_.remark(Weight::not_judged, "not_judged", n,
+                       "where a parachute drifts is not judged");
+        return true;
+      }
+      return false;
+    case Task::change_altitude:
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "where this flies is not judged: replace it by waypoints");
+      return true;
+    case Task::transition:
+      return transition(n);
+    default:
+      break;
+  }
+  if (!formats::flies_to_position(task)) {
+    return false;
+  }
+  begin_in_the_air(n);
+  flight_.repeats = flown_[{flight_.before, n}]++;
+  const bool ends = is_winged_ ? fly_wing(n) : fly_hover(n);
+  flight_.before = n;
+  former_home_z_.reset();
+  is_pending_ = false;
+  return ends;
+}
+
+FlownMission fly_mission(const formats::MissionFile& plan, formats::Autopilot autopilot,
+                         const World& world, const FlightOptions& options) {
+  return Walker(plan, autopilot, world, options).fly();
+}
+}  // namespace altiplan::host

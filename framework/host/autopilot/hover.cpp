@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// ArduPilot's copter (AC_WPNav, SCurve, mode_auto), and PX4's (FlightTaskAuto, PositionSmoothing).
+#include <algorithm>
+#include <cmath>
+
+#include "host/autopilot/flight.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr double kGroundStep = 10;  // metres between heights above the ground
+constexpr double kTerrainMargin =
+    10;  // ArduPilot slows down before it is this far off (WP_TER_MARGIN)
+constexpr double kCornerSpacing = 4;  // metres between the chords of a corner
+constexpr double kTouchDown = 10;     // metres above the ground from which it sinks slowly
+
+Vec3 at_height(const Eigen::Vector2d& at, double z) { return {at.x(), at.y(), z}; }
+}  // namespace
+
+Hover::Hover(Flight& flight, const Eigen::Vector2d& place, double z)
+    : at(place), low(z), high(z), flight_(flight) {
+  const bool is_copter = flight.autopilot().is_copter();
+  const double v = flight.autopilot().is_px4() ? flight.parameter("MPC_XY_CRUISE")
+                   : is_copter                 ? flight.parameter("WP_SPD")
+                                               : 5;  // Q_WP_SPD
+  speed_mps[0] = speed_mps[1] = v;
+}
+
+double Hover::climb_rate() const {
+  const formats::Autopilot autopilot = flight_.autopilot();
+  return flight_.parameter(autopilot.is_px4()      ? "MPC_Z_V_AUTO_UP"
+                           : autopilot.is_copter() ? "WP_SPD_UP"
+                                                   : "Q_WP_SPD_UP");
+}
+
+double Hover::sink_rate() const {
+  const formats::Autopilot autopilot = flight_.autopilot();
+  return flight_.parameter(autopilot.is_px4()      ? "MPC_Z_V_AUTO_DN"
+                           : autopilot.is_copter() ? "WP_SPD_DN"
+                                                   : "Q_WP_SPD_DN");
+}
+
+double Hover::reach() const {
+  const formats::Autopilot autopilot = flight_.autopilot();
+  if (!autopilot.is_px4()) {
+    return autopilot.is_copter() ? flight_.parameter("WP_RADIUS_M") : 2;
+  }
+  return acceptance_m > 0 ? acceptance_m : flight_.parameter("NAV_ACC_RAD");
+}
+
+void Hover::climb(std::size_t command, const char* what, double low_m, double high_m) {
+  flight_.begin(command, what).ground =
+      is_on_ground ? FlownPart::Ground::touched_from_above : FlownPart::Ground::kept_off;
+  const double bottom = std::min(low, low_m);
+  const double top = std::max(high, high_m);
+  flight_.add_column(at, bottom, top, std::min(reach(), 2.0));
+  const double least = std::max({low_m - high, low - high_m, 0.0});
+  const double most = std::max(high_m - low, high - low_m);
+  const double first =
+      flight_.autopilot().is_px4() ? flight_.parameter("MPC_TKO_SPEED") : climb_rate();
+  const bool rises = low_m >= low;
+  const double fastest = rises ? std::max(first, climb_rate()) : sink_rate();
+  const double slowest = rises ? std::min(first, climb_rate()) : sink_rate();
+  flight_.take({least / fastest, most / slowest + 5});
+  low = low_m;
+  high = high_m;
+  previous_.reset();
+  stops = true;
+  is_on_ground = false;
+}
+
+void Hover::cut_corner(const Eigen::Vector2d& to, double z) {
+  const double radius = reach();
+  if (!previous_ || radius <= kCornerSpacing / 2) {
+    return;  // within the reach of the legs
+  }
+  const Vec3 corner = at_height(at, low);
+  const Vec3 back = *previous_ - corner;
+  const Vec3 onward = at_height(to, z) - corner;
+  const double room_back = back.head<2>().norm();
+  const double room_onward = onward.head<2>().norm();
+  if (room_back < 1e-6 || room_onward < 1e-6) {
+    return;
+  }
+  const int chords = int(std::ceil(radius / kCornerSpacing));
+  for (int n = 1; n <= chords; ++n) {
+    const double before = radius * n / chords;
+    const Vec3 a = corner + back * std::min(1.0, before / room_back);
+    const Vec3 b = corner + onward * std::min(1.0, before / room_onward);
+    flight_.add_strip(a, a.z() + high - low, b, b.z() + high - low, kCornerSpacing / 2);
+  }
+}
+
+void Hover::follow_ground(const Destination& to) {
+  const double length = (to.at - at).norm();
+  const int steps = std::max(1, int(std::ceil(length / kGroundStep)));
+  const double from_above = low - flight_.ground(at);
+  double z = low;  // with the lag of the fastest flight
+  Vec3 before = at_height(at, low);
+  double before_high = high;
+  for (int n = 1; n <= steps; ++n) {
+    const double part = double(n) / steps;
+    const Eigen::Vector2d p = at + part * (to.at - at);
+    const double sought = flight_.ground(p) + from_above + part * (*to.above_ground - from_above);
+    const double seconds = length / steps / speed_mps[1];
+    z = std::clamp(sought, z - sink_rate() * seconds, z + climb_rate() * seconds);
+    z = std::clamp(z, sought - kTerrainMargin, sought + kTerrainMargin);
+    const Vec3 here = at_height(p, std::min(z, sought));
+    flight_.add_strip(before, before_high, here, std::max(z, sought), std::min(reach(), 2.0));
+    before = here;
+    before_high = std::max(z, sought);
+  }
+  low = before.z();
+  high = before_high;
+}
+
+void Hover::go(std::size_t command, const char* what, const Destination& to) {
+  flight_.begin(command, what);
+  const double vertical = std::max(std::max(to.high - low, 0.0) / climb_rate(),
+                                   std::max(high - to.low, 0.0) / sink_rate());
+  const double along = (to.at - at).norm();
+  const Vec3 from = at_height(at, low);
+  const bool is_px4 = flight_.autopilot().is_px4();
+  if (!stops && !to.above_ground) {
+    cut_corner(to.at, to.low);
+  }
+  if (to.above_ground) {
+    follow_ground(to);
+  } else {
+    // PX4 keeps within a metre of its line, ArduPilot within the radius of the blended corners.
+    flight_.add_leg(from, high, at_height(to.at, to.low), to.high,
+                    is_px4 ? 1.0 : std::min(reach(), 10.0));
+    low = to.low;
+    high = to.high;
+  }
+  const double both_ends = is_px4 ? 2.4 : 6.5;  // v / a + a / jerk
+  flight_.take({std::max(along / speed_mps[1], std::abs(to.low - from.z()) / climb_rate()) * 0.95,
+                std::max(along / speed_mps[0], vertical) + both_ends});
+  previous_ = from;
+  at = to.at;
+}
+
+void Hover::arc(std::size_t command, const Destination& to, double angle) {
+  flight_.begin(command, "the arc");
+  const Eigen::Vector2d chord = to.at - at;
+  const double radius = chord.norm() / (2 * std::sin(std::abs(angle) / 2));
+  // Clockwise arcs have their centre to the right of the chord, or to the left beyond half a turn.
+  const double sense = angle > 0 ? 1 : -1;
+  const Eigen::Vector2d right(chord.y(), -chord.x());
+  const Eigen::Vector2d centre =
+      at + chord / 2 + sense * right.normalized() * radius * std::cos(std::abs(angle) / 2);
+  const double start = std::atan2(at.y() - centre.y(), at.x() - centre.x());
+  const int pieces = std::max(2, int(std::ceil(std::abs(angle) / 0.1)));
+  Vec3 before = at_height(at, low);
+  for (int n = 1; n <= pieces; ++n) {
+    const double share = double(n) / pieces;
+    const double bearing = start - angle * share;
+    const Vec3 here =
+        at_height(centre + radius * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)),
+                  low + share * (to.low - low));
+    const double sagitta = radius * angle * angle / (8.0 * pieces * pieces);
+    flight_.add_strip(before, before.z() + high - low, here, here.z() + to.high - to.low,
+                      reach() + sagitta);
+    before = here;
+  }
+  const double length = radius * std::abs(angle);
+  flight_.take(
+      {length / speed_mps[1], length / std::min(speed_mps[0], std::sqrt(1.25 * radius)) + 6.5});
+  at = to.at;
+  low = to.low;
+  high = to.high;
+  previous_.reset();
+}
+
+void Hover::circle(std::size_t command, const Destination& centre, double radius, double turns,
+                   bool clockwise) {
+  constexpr double kAtCentre = 0.5;
+  constexpr double kAtEdge = 3;
+  const Eigen::Vector2d off = at - centre.at;
+  const bool is_from_centre = off.norm() <= kAtCentre;
+  Destination edge = centre;
+  if (!is_from_centre) {
+    edge.at = centre.at + radius * off.normalized();
+    if ((edge.at - at).norm() > kAtEdge) {
+      stops = true;
+      go(command, "the way to its circle", edge);
+    }
+  }
+  flight_.begin(command, "its circle");
+  const double bottom = std::min(low, centre.low);
+  const double top = std::max(high, centre.high);
+  flight_.add_disc(centre.at, is_from_centre ? 0 : radius, radius, bottom, top);
+  const double v = std::min({speed_mps[0], std::sqrt(0.5 * 2.5 * radius), radians(20) * radius});
+  const double seconds = 2 * kPi * radius * turns / v;
+  flight_.take({0.9 * seconds, 1.1 * seconds + 15});
+  const double begun = std::atan2(off.y(), off.x());
+  const double left = begun - (clockwise ? 1 : -1) * 2 * kPi * turns;
+  at = centre.at + radius * Eigen::Vector2d(std::cos(left), std::sin(left));
+  low = centre.low;
+  high = centre.high;
+  previous_.reset();
+  stops = true;
+}
+
+void Hover::land(std::size_t command, const char* what) {
+  FlownPart& part = flight_.begin(command, what);
+  part.ground = FlownPart::Ground::touched_from_above;
+  const double foot = std::min(low, flight_.ground(at));
+  flight_.add_column(at, foot, high, std::min(reach(), 2.0));
+  const double height = high - foot;
+  const double last = std::min(height, kTouchDown);
+  const bool is_px4 = flight_.autopilot().is_px4();
+  const double fast = is_px4                            ? flight_.parameter("MPC_LAND_SPEED")
+                      : flight_.autopilot().is_copter() ? flight_.parameter("LAND_SPD_MS")
+                                                        : flight_.parameter("Q_LAND_FINAL_SPD");
+  const double slow = is_px4 ? std::min(fast, flight_.parameter("MPC_LAND_CRWL")) : fast;
+  const double above = (height - last) / sink_rate();
+  flight_.take({above + last / 2 / fast, above + last / slow + 5});
+  low = high = foot;
+  previous_.reset();
+  stops = true;
+  is_on_ground = true;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+
+using formats::Airframe;
+using formats::MissionCommand;
+using formats::Task;
+using Weight = Remark::Weight;
+
+bool Walker::fly_hover(std::size_t n) {
+  Destination to = destination(n);
+  const MissionCommand& command = commands_[n];
+  const Task task = task_of(n);
+  const bool is_copter = autopilot_.is_copter();
+  if (task == Task::land || task == Task::vtol_land || task == Task::payload_place) {
+    to.low = hover_->low;
+    to.high = hover_->high;
+    to.above_ground.reset();
+    arrive(n, to);
+    const double top_low = hover_->low;
+    const double top_high = hover_->high;
+    hover_->land(n, task == Task::payload_place ? "the descent to place" : "the landing");
+    if (task == Task::payload_place) {
+      hover_->climb(n, "the climb after placing", top_low, top_high);
+      return false;
+    }
+    return true;
+  }
+  if (task == Task::loiter_turns && is_copter && command.params[2] == 0) {
+    to.low = std::min(to.low, hover_->low);  // turns in yaw at the centre, its height unchanged
+    to.high = std::max(to.high, hover_->high);
+    to.above_ground.reset();
+  } else if (task == Task::loiter_turns) {
+    const double radius = std::min(std::abs(command.params[2]), 2000.0);
+    hover_->circle(n, to, radius, command.params[0], command.params[2] > 0);
+    return false;
+  }
+  if (task == Task::spline) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "the curve of a spline is not judged: replace it by waypoints");
+  }
+  if (task == Task::arc && std::abs(command.params[0]) >= 1 && !to.above_ground) {
+    hover_->arc(n, to, radians(command.params[0]));
+    return false;
+  }
+  if (task == Task::loiter_to_altitude && is_px4()) {
+    Destination level = to;
+    level.low = hover_->low;
+    level.high = hover_->high;
+    arrive(n, level);
+    hover_->climb(n, "the way to its height", to.low, to.high);
+    return false;
+  }
+  arrive(n, to);
+  const double hold = task == Task::waypoint || task == Task::loiter_time || task == Task::spline
+                          ? command.params[0]
+                          : 0;
+  hover_->acceptance_m = std::isfinite(command.params[1]) ? command.params[1] : 0;
+  hover_->stops = hold > 0 || task != Task::waypoint;
+  if (hold > 0) {
+    flight_.take({hold, hold});
+  }
+  if (task == Task::loiter_forever) {
+    flight_.take({kInfinity, kInfinity});
+    return true;
+  }
+  return false;
+}
+
+void Walker::arrive(std::size_t n, const Destination& to) {
+  constexpr double kThere = 1e-3;
+  const bool is_there = (to.at - hover_->at).norm() < kThere &&
+                        std::abs(to.low - hover_->low) < kThere && flight_.before == n;
+  if (!is_there) {
+    hover_->go(n, "", to);
+  } else if (!commands_.next_position(n)) {
+    hover_->go(n, "its place", to);
+  }
+}
+
+void Walker::fly_wing_to(std::size_t n, const char* what, const Destination& to, bool at_once) {
+  const MissionCommand& command = commands_[n];
+  Wing::Leg leg{to, next_destination(n)};
+  leg.at_once = at_once;
+  if (task_of(n) == Task::waypoint && !is_px4()) {
+    leg.acceptance_m = command.params[1] > 0 ? command.params[1] : 0;
+    leg.pass_by_m = command.params[2] > 0 ? command.params[2] : 0;
+  }
+  wing_->go(n, what, leg);
+}
+
+bool Walker::fly_wing(std::size_t n) {
+  const Task task = task_of(n);
+  Destination to = destination(n);
+  const bool lands = task == Task::land || task == Task::vtol_land || task == Task::payload_place;
+  if (lands && autopilot_.airframe == Airframe::vtol) {
+    to.low = wing_->low();
+    to.high = wing_->high();
+    to.above_ground.reset();
+    fly_wing_to(n, "", to, true);
+    hover_.emplace(flight_, to.at, wing_->low());
+    hover_->high = wing_->high();
+    is_winged_ = false;
+    hover_->land(n, "the landing");
+    return true;
+  }
+  if (task == Task::land) {
+    wing_->land(n, to);
+    flight_.remark(Weight::note, "abort", n, "where an aborted landing flies is not judged");
+    return true;
+  }
+  switch (task) {
+    case Task::loiter_forever:
+    case Task::loiter_turns:
+    case Task::loiter_time:
+    case Task::loiter_to_altitude:
+      return circle_wing(n, to);
+    default:
+      if (flight_.before != n || !commands_.next_position(n)) {  // else it begins there
+        fly_wing_to(n, "", to, false);
+      }
+      return false;
+  }
+}
+
+bool Walker::circle_wing(std::size_t n, const Destination& to) {
+  const MissionCommand& command = commands_[n];
+  const Task task = task_of(n);
+  const double own = parameter(is_px4() ? "NAV_LOITER_RAD" : "WP_LOITER_RAD");
+  double given = command.params[task == Task::loiter_to_altitude ? 1 : 2];
+  given = std::isfinite(given) ? given : 0;
+  const bool is_own = is_px4() ? given == 0 : std::abs(given) <= 1 || task == Task::loiter_time;
+  const double radius = is_own ? std::abs(own) : std::abs(given);
+  const bool clockwise = given != 0 ? given > 0 : own >= 0;
+  Wing::Leg leg{to, next_destination(n)};
+  leg.acceptance_m = radius;
+  leg.at_once = is_px4() && task != Task::loiter_to_altitude;
+  if (is_px4() && task == Task::loiter_to_altitude) {
+    leg.to.low = leg.to.high = wing_->low();  // level to the circle
+    leg.at_once = true;
+  }
+  wing_->go(n, "", leg);
+  const double turns = task == Task::loiter_turns ? command.params[0] : 0;
+  const double seconds = task == Task::loiter_time ? command.params[0] : 0;
+  wing_->circle(n, "its circle", to, radius, clockwise, turns, seconds, leg.next,
+                command.params[3] == 1);
+  if (task == Task::loiter_forever) {
+    flight_.take({kInfinity, kInfinity});
+    return true;
+  }
+  return false;
+}
+}  // namespace altiplan::host

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+
+using formats::Airframe;
+using formats::MissionCommand;
+using formats::Task;
+using Weight = Remark::Weight;
+
+bool Walker::delay(std::size_t n) {
+  if (!autopilot_.is_copter()) {
+    if (is_px4()) {
+      flight_.remark(Weight::not_judged, "not_judged", n, "where an aeroplane waits is not judged");
+    }
+    return false;
+  }
+  const double seconds = commands_[n].params[0];
+  constexpr double kDay = 86400;
+  flight_.take(seconds > 0 ? TimeSpan{seconds, seconds} : TimeSpan{0, kDay});
+  if (hover_) {
+    hover_->stops = true;
+  }
+  return false;
+}
+
+void Walker::set_home(std::size_t n) {
+  const MissionCommand& command = commands_[n];
+  const bool is_here =
+      command.params[0] == 1 || (!command.has_position() && command.altitude_m == 0);
+  if (is_px4() && !is_here) {
+    flight_.remark(Weight::fails, "set_home", n,
+                   autopilot_.name() + " sets a wrong home where this gives a place");
+    return;
+  }
+  former_home_z_ = home_z_;
+  if (is_here) {
+    home_ = here();
+    home_z_ = low();
+  } else {
+    home_ = to_local(command.lon, command.lat);
+    home_z_ =
+        formats::is_of_home(command.frame) ? home_z_ + command.altitude_m : command.altitude_m;
+  }
+  has_new_home_ = true;
+  flight_.remark(Weight::note, "set_home", n,
+                 "from here on heights relative to home count from " +
+                     std::to_string(int(std::lround(home_z_))) + " m above sea level");
+}
+
+void Walker::set_hover_speed() {
+  if (hover_speed_[1] > 0 && hover_) {
+    hover_->speed_mps[0] = hover_speed_[0];
+    hover_->speed_mps[1] = hover_speed_[1];
+  }
+}
+
+void Walker::set_wing_speed() {
+  if (wing_speed_[1] > 0) {
+    wing_->set_speed(wing_speed_[0], wing_speed_[1]);
+    return;
+  }
+  const char* name = is_px4() ? "FW_AIRSPD_TRIM" : "AIRSPEED_CRUISE";
+  const double cruise = parameter(name);
+  const double planned = plan_.cruise_mps > 0 && !parameters_.is_given(name)
+                             ? std::clamp(plan_.cruise_mps, min_airspeed(), max_airspeed())
+                             : cruise;
+  wing_->set_speed(std::min(cruise, planned), std::max(cruise, planned));
+}
+
+void Walker::change_speed(std::size_t n) {
+  const auto& p = commands_[n].params;
+  const double value = p[1];
+  if (autopilot_.is_copter() ? !(is_px4() || p[0] == 0 || p[0] == 1) : false) {
+    return;  // of climbs and descents, within the span of the others' times
+  }
+  double speeds[2] = {value, value};
+  bool counts = value > 0;
+  if (autopilot_.is_copter()) {
+    if (is_px4()) {
+      const double own = parameter("MPC_XY_CRUISE");
+      const double limited = std::min(value, parameter("MPC_XY_VEL_MAX"));
+      speeds[0] = speeds[1] = value > 0 ? limited : own;
+      counts = true;
+    }
+    take_speed(counts, speeds, hover_speed_, parameter(is_px4() ? "MPC_XY_CRUISE" : "WP_SPD"));
+    set_hover_speed();
+    return;
+  }
+  const double cruise = parameter(is_px4() ? "FW_AIRSPD_TRIM" : "AIRSPEED_CRUISE");
+  if (is_px4()) {
+    speeds[0] = speeds[1] = value > 0 ? std::clamp(value, min_airspeed(), max_airspeed()) : cruise;
+    counts = true;
+  } else if (p[0] == 1) {  // a minimum ground speed
+    speeds[0] = cruise;
+    speeds[1] = std::max(cruise, std::min(value, max_airspeed()));
+  } else {
+    counts = p[0] == 0 && (value == -2 || (value >= min_airspeed() && value <= max_airspeed()));
+    speeds[0] = speeds[1] = value == -2 ? cruise : value;
+  }
+  take_speed(counts, speeds, wing_speed_, cruise);
+  if (wing_) {
+    set_wing_speed();
+  }
+}
+
+void Walker::take_speed(bool counts, const double* speeds, double* present, double own) const {
+  if (!counts) {
+    return;
+  }
+  const double before[2] = {present[1] > 0 ? present[0] : own, present[1] > 0 ? present[1] : own};
+  present[0] = is_pending_ ? std::min(before[0], speeds[0]) : speeds[0];
+  present[1] = is_pending_ ? std::max(before[1], speeds[1]) : speeds[1];
+}
+}  // namespace altiplan::host

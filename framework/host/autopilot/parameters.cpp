@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/parameters.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "altiplan/error.hpp"
+#include "altiplan/formats/input_file.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// A parameter with its default in ArduPilot's copter and plane (the quadplane's is the plane's),
+/// and in PX4's copter and plane (the VTOL's is the plane's); none: it has no such parameter.
+struct Row {
+  const char* name;
+  std::array<double, 4> defaults;
+  const char* old_name = "";  ///< up to ArduPilot 4.6
+  double old_unit = 1;        ///< in units of the new one
+};
+
+constexpr double kCm = 0.01;
+
+const Row kRows[] = {
+    {"WP_RADIUS_M", {2, kNone, kNone, kNone}, "WPNAV_RADIUS", kCm},
+    {"WP_SPD", {10, kNone, kNone, kNone}, "WPNAV_SPEED", kCm},
+    {"WP_SPD_UP", {2.5, kNone, kNone, kNone}, "WPNAV_SPEED_UP", kCm},
+    {"WP_SPD_DN", {1.5, kNone, kNone, kNone}, "WPNAV_SPEED_DN", kCm},
+    {"WP_ACC", {2.5, kNone, kNone, kNone}, "WPNAV_ACCEL", kCm},
+    {"RTL_ALT_M", {15, kNone, kNone, kNone}, "RTL_ALT", kCm},
+    {"RTL_CLIMB_MIN_M", {0, kNone, kNone, kNone}, "RTL_CLIMB_MIN", kCm},
+    {"RTL_CONE_SLOPE", {3, kNone, kNone, kNone}},
+    {"RTL_LOIT_TIME", {5000, kNone, kNone, kNone}},
+    {"RTL_ALT_TYPE", {0, kNone, kNone, kNone}},
+    {"LAND_SPD_MS", {0.5, kNone, kNone, kNone}, "LAND_SPEED", kCm},
+    {"LAND_ALT_LOW_M", {10, kNone, kNone, kNone}, "LAND_ALT_LOW", kCm},
+    {"RALLY_LIMIT_KM", {0.3, 5, kNone, kNone}},
+    {"RALLY_INCL_HOME", {1, 0, kNone, kNone}},
+    {"FENCE_ENABLE", {0, 0, kNone, kNone}},
+    {"FENCE_OPTIONS", {0, 0, kNone, kNone}},
+    {"WP_RADIUS", {kNone, 90, kNone, kNone}},
+    {"WP_LOITER_RAD", {kNone, 60, kNone, kNone}},
+    {"NAVL1_PERIOD", {kNone, 17, kNone, kNone}},
+    {"NAVL1_DAMPING", {kNone, 0.75, kNone, kNone}},
+    {"AIRSPEED_CRUISE", {kNone, 12, kNone, kNone}, "TRIM_ARSPD_CM", kCm},
+    {"AIRSPEED_MIN", {kNone, 9, kNone, kNone}, "ARSPD_FBW_MIN", 1},
+    {"AIRSPEED_MAX", {kNone, 22, kNone, kNone}, "ARSPD_FBW_MAX", 1},
+    {"TECS_CLMB_MAX", {kNone, 5, kNone, kNone}},
+    {"TECS_SINK_MAX", {kNone, 5, kNone, kNone}},
+    {"TECS_HDEM_TCONST", {kNone, 3, kNone, kNone}},
+    {"ALT_SLOPE_MIN", {kNone, 15, kNone, kNone}, "GLIDE_SLOPE_MIN", 1},
+    {"ROLL_LIMIT_DEG", {kNone, 45, kNone, kNone}, "LIM_ROLL_CD", 0.01},
+    {"RTL_ALTITUDE", {kNone, 100, kNone, kNone}, "ALT_HOLD_RTL", kCm},
+    {"RTL_RADIUS", {kNone, 0, kNone, kNone}},
+    {"RTL_AUTOLAND", {kNone, 0, kNone, kNone}},
+    {"TERRAIN_LOOKAHD", {kNone, 2000, kNone, kNone}},
+    {"Q_OPTIONS", {kNone, 0, kNone, kNone}},
+    {"Q_RTL_MODE", {kNone, 0, kNone, kNone}},
+    {"Q_WP_SPD_UP", {kNone, 2.5, kNone, kNone}, "Q_WP_SPEED_UP", kCm},
+    {"Q_WP_SPD_DN", {kNone, 1.5, kNone, kNone}, "Q_WP_SPEED_DN", kCm},
+    {"Q_LAND_FINAL_SPD", {kNone, 0.5, kNone, kNone}},
+    {"NAV_ACC_RAD", {kNone, kNone, 10, 10}},
+    {"NAV_LOITER_RAD", {kNone, kNone, kNone, 80}},
+    {"MPC_XY_CRUISE", {kNone, kNone, 5, 5}},
+    {"MPC_XY_VEL_MAX", {kNone, kNone, 12, 8}},
+    {"MPC_Z_V_AUTO_UP", {kNone, kNone, 3, 3}},
+    {"MPC_Z_V_AUTO_DN", {kNone, kNone, 1.5, 1.5}},
+    {"MPC_TKO_SPEED", {kNone, kNone, 1.5, 1.5}},
+    {"MPC_LAND_SPEED", {kNone, kNone, 0.7, 0.7}},
+    {"MPC_LAND_CRWL", {kNone, kNone, 0.3, 0.3}},
+    {"RTL_RETURN_ALT", {kNone, kNone, 30, 100}},
+    {"RTL_DESCEND_ALT", {kNone, kNone, 30, 100}},
+    {"RTL_TYPE", {kNone, kNone, 0, 1}},
+    {"FW_AIRSPD_TRIM", {kNone, kNone, kNone, 15}},
+    {"FW_AIRSPD_MIN", {kNone, kNone, kNone, 10}},
+    {"FW_AIRSPD_MAX", {kNone, kNone, kNone, 20}},
+    {"FW_T_CLMB_R_SP", {kNone, kNone, kNone, 3}},
+    {"FW_T_SINK_R_SP", {kNone, kNone, kNone, 2}},
+    {"FW_T_CLMB_MAX", {kNone, kNone, kNone, 5}},
+    {"FW_R_LIM", {kNone, kNone, kNone, 50}},
+    {"VT_TRANS_TIMEOUT", {kNone, kNone, kNone, 15}},
+};
+
+const Row& row_of(const std::string& name) {
+  for (const Row& row : kRows) {
+    if (row.name == name) {
+      return row;
+    }
+  }
+  throw std::logic_error("no such parameter: " + name);
+}
+
+std::optional<double> value_in(const ParameterFile& file, const Row& row) {
+  if (const auto found = file.find(row.name); found != file.end()) {
+    return found->second;
+  }
+  if (const auto found = file.find(row.old_name); found != file.end()) {
+    return found->second * row.old_unit;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r,", at)) != std::string::npos;) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r,", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+}  // namespace
+
+ParameterFile read_parameters(const std::string& file) {
+  const std::string text = formats::read_file(file);
+  ParameterFile values;
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line = text.substr(at, end - at);
+    at = end + 1;
+    ++number;
+    const std::vector<std::string> words = words_of(line);
+    if (words.empty() || words.front().front() == '#') {
+      continue;
+    }
+    const bool is_of_qgc = words.size() >= 5;
+    const std::size_t name = is_of_qgc ? 2 : 0;
+    double value = 0;
+    const bool is_pair =
+        is_of_qgc || words.size() == 2 || (words.size() > 2 && words[2].front() == '#');
+    if (is_pair) {
+      const std::string& word = words[name + 1];
+      const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (error == std::errc() && rest == word.data() + word.size() && std::isfinite(value)) {
+        values[words[name]] = value;
+        continue;
+      }
+    }
+    throw Error(file + ":" + std::to_string(number) +
+                ": expected a parameter's name and its value, found " + excerpt(line));
+  }
+  if (values.empty()) {
+    throw Error(file + ": contains no parameters");
+  }
+  return values;
+}
+
+double Parameters::operator()(const std::string& name) const {
+  const Row& row = row_of(name);
+  const std::size_t column = (autopilot_.is_px4() ? 2 : 0) + (autopilot_.is_copter() ? 0 : 1);
+  const std::optional<double> given = value_in(file_, row);
+  const double value = given.value_or(row.defaults[column]);
+  used_.insert_or_assign(name, Used{name, value, given.has_value()});
+  return value;
+}
+
+bool Parameters::is_given(const std::string& name) const {
+  return value_in(file_, row_of(name)).has_value();
+}
+
+std::vector<Parameters::Used> Parameters::used() const {
+  std::vector<Used> all;
+  for (const auto& [name, use] : used_) {
+    all.push_back(use);
+  }
+  return all;
+}
+}  // namespace altiplan::host

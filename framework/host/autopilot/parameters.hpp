@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "altiplan/formats/mission_commands.hpp"
+
+namespace altiplan::host {
+
+/// Parameters of an autopilot as a file has them, by name.
+using ParameterFile = std::map<std::string, double>;
+
+/// Reads Mission Planner's `.param` ("NAME,VALUE") or QGroundControl's `.params` (five columns, the
+/// third and fourth name and value). Throws Error naming the file and the line.
+ParameterFile read_parameters(const std::string& file);
+
+/// The parameters that decide how an autopilot flies a mission: those of a file, else its defaults.
+/// Remembers which were asked for.
+class Parameters {
+ public:
+  Parameters(formats::Autopilot autopilot, const ParameterFile& file)
+      : autopilot_(autopilot), file_(file) {}
+
+  /// By its newest name, in metres, seconds and degrees; a file may have an older name and unit.
+  double operator()(const std::string& name) const;
+  bool is_given(const std::string& name) const;
+
+  struct Used {
+    std::string name;
+    double value;
+    bool is_given;  ///< by the file
+  };
+  /// Sorted by name.
+  std::vector<Used> used() const;
+  formats::Autopilot autopilot() const { return autopilot_; }
+
+ private:
+  formats::Autopilot autopilot_;
+  const ParameterFile& file_;
+  mutable std::map<std::string, Used> used_;
+};
+}  // namespace altiplan::host

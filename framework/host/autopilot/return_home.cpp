@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+
+using formats::Airframe;
+using formats::MissionCommand;
+using formats::Task;
+using Weight = Remark::Weight;
+
+void Walker::finish() {
+  flight_.repeats = 0;
+  const std::size_t last = commands_.size() - 1;
+  if (autopilot_.is_copter()) {
+    flight_.remark(Weight::note, "end", last, "the mission ends in the air: it hovers there");
+  } else if (is_winged_ && is_px4()) {
+    Destination there;
+    there.at = wing_->mean_place();
+    there.low = wing_->low();
+    there.high = wing_->high();
+    wing_->circle(last, "the circle at the end", there, parameter("NAV_LOITER_RAD"), true, 0, 0, {},
+                  false);
+    flight_.take({kInfinity, kInfinity});
+  } else if (is_winged_) {
+    return_home(last);
+  }
+}
+
+void Walker::return_home(std::size_t n) {
+  flight_.repeats = 0;
+  if (!has_flown_) {
+    return;
+  }
+  if (!plan_.home && !has_new_home_) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "where home is, to which it returns, the file does not say");
+    return;
+  }
+  const std::optional<Hover> hover = hover_;
+  const std::optional<Wing> wing = wing_;
+  const bool is_winged = is_winged_;
+  const TimeSpan begin = mission_.time;
+  TimeSpan end{kInfinity, 0};
+  for (const Refuge& refuge : refuges()) {
+    mission_.time = begin;
+    if (hover) {
+      hover_.emplace(*hover);
+    }
+    if (wing) {
+      wing_.emplace(*wing);
+    }
+    is_winged_ = is_winged;
+    is_winged_ ? return_wing(n, refuge) : return_hover(n, refuge);
+    end = {std::min(end.min_s, mission_.time.min_s), std::max(end.max_s, mission_.time.max_s)};
+  }
+  mission_.time = end;
+  flight_.before = n;
+}
+
+std::vector<Walker::Refuge> Walker::refuges() const {
+  constexpr double kAlike = 20;  // metres
+  std::vector<Refuge> all;
+  const double limit = is_px4() ? kInfinity : 1000 * parameter("RALLY_LIMIT_KM");
+  for (const formats::MissionPoint& point : plan_.rally) {
+    const Refuge rally{to_local(point.lon, point.lat), point.altitude_m};
+    if ((rally.at - here()).norm() <= limit) {
+      all.push_back(rally);
+    }
+  }
+  if (all.empty() || is_px4() || parameter("RALLY_INCL_HOME") != 0) {
+    all.push_back({home_, {}});
+  }
+  const auto distance = [&](const Refuge& refuge) { return (refuge.at - here()).norm(); };
+  double nearest = kInfinity;
+  for (const Refuge& refuge : all) {
+    nearest = std::min(nearest, distance(refuge));
+  }
+  std::erase_if(all, [&](const Refuge& refuge) { return distance(refuge) > nearest + kAlike; });
+  return all;
+}
+
+void Walker::return_hover(std::size_t n, const Refuge& refuge) {
+  const double distance = (refuge.at - hover_->at).norm();
+  double target = 0;
+  if (is_px4()) {
+    target = std::max(hover_->high, home_z_ + parameter("RTL_RETURN_ALT"));
+  } else if (autopilot_.is_copter()) {
+    const double present = hover_->high - home_z_;
+    double height = std::max({present + parameter("RTL_CLIMB_MIN_M"), parameter("RTL_ALT_M"),
+                              refuge.height_m.value_or(0)});
+    const double cone = parameter("RTL_CONE_SLOPE");
+    if (cone >= 0.5) {
+      height = std::min(height, std::max(cone * distance, present));
+    }
+    if (parameter("RTL_ALT_TYPE") != 0) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "a return at a height above the ground (RTL_ALT_TYPE) is not judged");
+    }
+    target = home_z_ + std::max(height, 0.3);
+  } else {
+    target = std::max(hover_->high, home_z_ + 15);
+  }
+  if (target > hover_->low) {
+    hover_->climb(n, "the climb of its return", target, std::max(target, hover_->high));
+  }
+  Destination home;
+  home.at = refuge.at;
+  home.low = hover_->low;
+  home.high = hover_->high;
+  hover_->go(n, "the way home", home);
+  hover_->land(n, "the landing at home");
+}
+
+void Walker::return_wing(std::size_t n, const Refuge& refuge) {
+  const bool has_landing =
+      std::any_of(plan_.commands.begin(), plan_.commands.end(), [](const auto& command) {
+        const Task task = formats::command_task(command.number).task;
+        return task == Task::landing_start || task == Task::land || task == Task::vtol_land;
+      });
+  const bool goes_to_landing =
+      has_landing && (is_px4() ? parameter("RTL_TYPE") != 0 : parameter("RTL_AUTOLAND") != 0);
+  if (goes_to_landing || (!is_px4() && parameter("Q_RTL_MODE") != 0)) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "a return that goes to a landing or ends in hover is not judged");
+    return;
+  }
+  const double above =
+      is_px4() ? parameter("RTL_RETURN_ALT") : refuge.height_m.value_or(parameter("RTL_ALTITUDE"));
+  Wing::Leg leg;
+  leg.to.at = refuge.at;
+  leg.to.low = is_px4()    ? std::max(wing_->high(), home_z_ + above)
+               : above < 0 ? wing_->high()
+                           : home_z_ + above;
+  leg.to.high = leg.to.low;
+  leg.at_once = wing_->low() < leg.to.low;
+  const double own = parameter(is_px4() ? "NAV_LOITER_RAD" : "WP_LOITER_RAD");
+  if (is_px4() && wing_->low() < leg.to.low) {
+    Destination there;
+    there.at = wing_->mean_place();
+    there.low = there.high = leg.to.low;
+    wing_->circle(n, "the climb of its return", there, own, true, 0, 0, leg.to, false);
+  }
+  wing_->leave_track();
+  wing_->go(n, "the way home", leg);
+  const double given = is_px4() ? 0 : parameter("RTL_RADIUS");
+  const double radius = std::abs(given != 0 ? given : own);
+  if (is_px4() && autopilot_.airframe == Airframe::vtol) {
+    Destination low_circle = leg.to;
+    low_circle.low = low_circle.high = home_z_ + parameter("RTL_DESCEND_ALT");
+    wing_->circle(n, "the circle at home", low_circle, radius, true, 1, 0, leg.to, false);
+    hover_.emplace(flight_, refuge.at, low_circle.low);
+    hover_->land(n, "the landing at home");
+    return;
+  }
+  Destination circle = leg.to;
+  if (is_px4()) {
+    circle.low = circle.high = home_z_ + parameter("RTL_DESCEND_ALT");
+  }
+  wing_->circle(n, "the circle at home", circle, radius, own >= 0, 0, 0, {}, false);
+  flight_.take({kInfinity, kInfinity});
+  flight_.remark(Weight::note, "end", n, "it circles at home for ever: it does not land");
+}
+}  // namespace altiplan::host

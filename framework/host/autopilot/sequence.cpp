@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/sequence.hpp"
+
+#include <cmath>
+
+namespace altiplan::host {
+
+using formats::Task;
+
+bool Sequence::is_jump(std::size_t n) const {
+  return task_of(n).task == Task::jump || task_of(n).task == Task::jump_to_tag;
+}
+
+std::optional<std::size_t> Sequence::target_of(std::size_t n) const {
+  const bool is_tag = task_of(n).task == Task::jump_to_tag;
+  const double sought = std::trunc(commands_[n].params[0]);
+  for (std::size_t i = 0; i < commands_.size() && sought >= 1; ++i) {
+    const bool is_it =
+        is_tag ? task_of(i).task == Task::jump_tag && std::trunc(commands_[i].params[0]) == sought
+               : double(commands_[i].item) == sought;
+    if (is_it) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+int Sequence::jumps_left(std::size_t n) const {
+  constexpr double kMost = 65535;
+  const double repeats = commands_[n].params[1];
+  const auto made = jumped_.find(n);
+  return repeats < 0 ? -1
+                     : int(std::isfinite(repeats) ? std::min(repeats, kMost) : 0) -
+                           (made == jumped_.end() ? 0 : made->second);
+}
+
+std::optional<std::size_t> Sequence::after_jump(std::size_t n) {
+  const std::optional<std::size_t> target = target_of(n);
+  if (!target) {  // of a tag: the mission ends
+    return commands_.size();
+  }
+  const int left = jumps_left(n);
+  if (left == 0) {
+    return n + 1;
+  }
+  if (left < 0 && jumped_[n] >= 2) {
+    return std::nullopt;
+  }
+  ++jumped_[n];
+  return *target;
+}
+
+std::optional<std::size_t> Sequence::next_position(std::size_t n) const {
+  std::size_t i = n + 1;
+  for (std::size_t steps = 0; i < commands_.size() && steps < 2 * commands_.size(); ++steps) {
+    if (is_done(i)) {
+      if (formats::flies_to_position(task_of(i).task)) {
+        return i;
+      }
+      if (is_jump(i) && jumps_left(i) != 0) {
+        if (const auto target = target_of(i)) {
+          i = *target;
+          continue;
+        }
+      }
+    }
+    ++i;
+  }
+  return std::nullopt;
+}
+}  // namespace altiplan::host

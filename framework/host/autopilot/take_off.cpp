@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/walker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+
+namespace altiplan::host {
+
+using formats::Airframe;
+using formats::MissionCommand;
+using formats::Task;
+using Weight = Remark::Weight;
+
+void Walker::begin_in_the_air(std::size_t n) {
+  if (has_flown_) {
+    return;
+  }
+  has_flown_ = true;
+  flight_.before = n;
+  const Destination to = destination(n);
+  const bool climbs = is_px4() && autopilot_.is_copter() && plan_.home;
+  if (climbs) {
+    hover_.emplace(flight_, home_, std::min(home_z_, flight_.ground(home_)));
+    hover_->is_on_ground = true;
+    hover_->climb(n, "the climb from home", to.low, to.high);
+    set_hover_speed();
+    return;
+  }
+  flight_.remark(Weight::note, "no_take_off", n,
+                 "the mission has no take-off: it is judged from here on, the way to here is not");
+  if (autopilot_.is_copter()) {
+    hover_.emplace(flight_, to.at, to.low);
+    hover_->high = to.high;
+    set_hover_speed();
+  } else {
+    is_winged_ = true;
+    wing_.emplace(flight_);
+    set_wing_speed();
+    const auto next = next_destination(n);
+    wing_->start(to.at, to.low, next ? next->at : to.at + Eigen::Vector2d(1, 0), true);
+  }
+}
+
+bool Walker::take_off(std::size_t n) {
+  flight_.repeats = 0;
+  const bool is_first = !has_flown_;
+  if (is_first) {
+    flight_.before = n;
+    hover_.emplace(flight_, home_, std::min(home_z_, flight_.ground(home_)));
+    hover_->is_on_ground = true;
+    set_hover_speed();
+  } else if (is_px4()) {
+    return !autopilot_.is_copter() ? false : fly_hover(n);
+  } else if (is_winged_) {
+    return false;
+  }
+  has_flown_ = true;
+  if (autopilot_.airframe == Airframe::plane) {
+    return take_off_along_runway(n);
+  }
+  const Destination to = destination(n);
+  const double top = top_of_take_off(n, to);
+  hover_->climb(n, "the climb after take-off", top, top);
+  if (is_px4() && commands_[n].has_position()) {
+    Destination there = to;
+    there.low = there.high = top;
+    if (autopilot_.is_copter()) {
+      hover_->go(n, "the way from home", there);
+    } else {
+      begin_to_wing(n, there.at);
+      fly_wing_to(n, "the way from home", there, true);
+    }
+  } else if (!autopilot_.is_copter()) {
+    const auto next = next_destination(n);
+    begin_to_wing(n, next ? next->at : home_ + Eigen::Vector2d(1, 0));
+  }
+  flight_.before = n;
+  return false;
+}
+
+double Walker::top_of_take_off(std::size_t n, const Destination& to) {
+  if (autopilot_.airframe == Airframe::vtol && !is_px4()) {
+    constexpr int kKeepsFrame = 8;
+    const bool keeps_frame = int(parameter("Q_OPTIONS")) & kKeepsFrame;
+    if (keeps_frame) {
+      return to.low;
+    }
+    if (!formats::is_of_home(commands_[n].frame)) {
+      flight_.remark(
+          Weight::fails, "take_off_frame", n,
+          "climbs by " + std::to_string(int(commands_[n].altitude_m)) +
+              " m from where it stands, whatever the frame of the altitude says: give it "
+              "relative to home");
+    }
+    return hover_->low + commands_[n].altitude_m;
+  }
+  return std::max(to.low, hover_->low + 1);
+}
+
+bool Walker::take_off_along_runway(std::size_t n) {
+  const Destination to = destination(n);
+  wing_.emplace(flight_);
+  set_wing_speed();
+  is_winged_ = true;
+  std::optional<double> heading;
+  if (options_.runway_deg) {
+    heading = radians(90 - *options_.runway_deg);
+  } else if (is_px4() && (to.at - home_).norm() > 10) {
+    heading = std::atan2(to.at.y() - home_.y(), to.at.x() - home_.x());
+  }
+  if (!heading) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "where an aeroplane takes off depends on its runway: give the heading "
+                   "(--runway DEGREES)");
+    const auto next = next_destination(n);
+    wing_->start(to.at, to.low, next ? next->at : to.at + Eigen::Vector2d(1, 0));
+    return false;
+  }
+  wing_->take_off(n, home_, *heading, to.low, is_px4() ? 0 : radians(10));
+  flight_.before = n;
+  return false;
+}
+
+void Walker::begin_to_wing(std::size_t, const Eigen::Vector2d& toward) {
+  wing_.emplace(flight_);
+  set_wing_speed();
+  is_winged_ = true;
+  const double z = hover_->low;
+  if (is_px4()) {  // straight ahead until it flies
+    const Eigen::Vector2d way = toward - hover_->at;
+    const double run = std::min(way.norm(), parameter("VT_TRANS_TIMEOUT") * wing_->speed_mps[1]);
+    wing_->start(hover_->at, z, hover_->at + (run > 0 ? way : Eigen::Vector2d(1, 0)));
+    return;
+  }
+  wing_->start(hover_->at, z, toward);
+}
+
+bool Walker::transition(std::size_t n) {
+  constexpr double kToWing = 4;
+  if (commands_[n].params[0] == kToWing && hover_ && !is_winged_) {
+    const auto next = next_destination(n);
+    begin_to_wing(n, next ? next->at : hover_->at + Eigen::Vector2d(1, 0));
+  } else if (commands_[n].params[0] != kToWing && is_winged_) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "where the vehicle stops when it changes to hover is not judged");
+    return true;
+  }
+  return false;
+}
+}  // namespace altiplan::host

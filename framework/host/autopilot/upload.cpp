@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/autopilot/upload.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace altiplan::host {
+namespace {
+
+using formats::Autopilot;
+using formats::command_task;
+using formats::CommandTask;
+using formats::Effect;
+using formats::MissionCommand;
+using formats::Task;
+using Weight = Remark::Weight;
+
+MissionCommand stored_one(MissionCommand command, Autopilot autopilot) {
+  constexpr double kDegrees = 1e7;
+  command.lat = std::round(command.lat * kDegrees) / kDegrees;
+  command.lon = std::round(command.lon * kDegrees) / kDegrees;
+  if (autopilot.is_px4()) {
+    command.altitude_m = double(float(command.altitude_m));
+    return command;
+  }
+  command.altitude_m =
+      std::trunc(command.altitude_m * 100 + (command.altitude_m > 0 ? 1e-6 : -1e-6)) / 100;
+  auto& p = command.params;
+  const auto whole = [](double& value, double maximum) {
+    value = std::isfinite(value) ? std::clamp(std::trunc(value), -maximum, maximum) : value;
+  };
+  switch (command_task(command.number).task) {
+    case Task::waypoint:
+      whole(p[0], 65535);
+      whole(p[1], 255);
+      whole(p[2], 255);
+      break;
+    case Task::loiter_forever:
+      whole(p[2], 65535);
+      break;
+    case Task::loiter_turns:
+      if (!(p[0] > 0 && p[0] < 1)) {
+        whole(p[0], 255);
+      }
+      p[2] = std::abs(p[2]) > 255 ? std::trunc(p[2] / 10) * 10 : std::trunc(p[2]);
+      p[2] = std::clamp(p[2], -2550.0, 2550.0);
+      break;
+    case Task::loiter_time:
+      whole(p[0], 65535);
+      break;
+    case Task::arc:
+      whole(p[0], 32767);
+      break;
+    default:
+      break;
+  }
+  return command;
+}
+
+/// What is refused before anything is flown.
+class UploadCheck {
+ public:
+  UploadCheck(const Sequence& commands, Flight& flight)
+      : commands_(commands), flight_(flight), autopilot_(flight.autopilot()) {}
+
+  /// What PX4 declares invalid of a whole mission (FeasibilityChecker); false if anything is.
+  bool check_feasibility();
+
+  /// Reports what is wrong with a command; false if the mission is not flown because of it.
+  bool check(std::size_t n) {
+    const MissionCommand& command = commands_[n];
+    const CommandTask& row = commands_.task_of(n);
+    const std::string who = autopilot_.name();
+    const auto refuse = [&](const char* rule, const std::string& why) {
+      flight_.remark(Weight::fails, rule, n, who + " " + why);
+      return false;
+    };
+    if (command.number == 0) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "where this flies is not judged: the file has no commands of it");
+      return false;
+    }
+    switch (row.effect(autopilot_)) {
+      case Effect::refused:
+        return refuse("refused", "refuses the mission at upload because of command " +
+                                     std::to_string(command.number));
+      case Effect::infeasible:
+        return refuse("refused", "declares the mission invalid because of command " +
+                                     std::to_string(command.number));
+      case Effect::unforeseeable:
+        return refuse("unforeseeable", "leaves to another program where this flies");
+      case Effect::dropped:
+        flight_.remark(Weight::note, "dropped", n, who + " skips this command");
+        return true;
+      case Effect::done:
+        break;
+    }
+    return check_frame(n, refuse) && check_numbers(n, refuse) && check_flow(n, refuse);
+  }
+
+ private:
+  template <class Refuse>
+  bool check_frame(std::size_t n, const Refuse& refuse) {
+    const MissionCommand& command = commands_[n];
+    const int frame = command.frame;
+    const bool flies = formats::flies_to_position(commands_.task_of(n).task);
+    const bool is_global = frame == 0 || frame == 3 || frame == 5 || frame == 6;
+    const std::string words = "refuses the frame " + std::to_string(frame) + " of this command";
+    if (is_px4()) {
+      const bool has_place = command.number == 195 || command.number == 201 ||
+                             command.number == 189 || command.number == 179 ||
+                             command.number == 4501 || command.number == 80;
+      const bool fits = flies ? is_global : has_place ? is_global || frame == 2 : frame == 2;
+      return fits || refuse("refused", words);
+    }
+    return !flies || is_global || frame == 2 || formats::is_above_ground(frame) ||
+           refuse("refused", words);
+  }
+
+  template <class Refuse>
+  bool check_numbers(std::size_t n, const Refuse& refuse) {
+    const MissionCommand& command = commands_[n];
+    const Task task = commands_.task_of(n).task;
+    const bool flies = formats::flies_to_position(task);
+    if (!is_px4()) {
+      const bool leaves_yaw = command.number == 16 || command.number == 21 ||
+                              command.number == 22 || command.number == 84 || command.number == 85;
+      for (std::size_t p = 0; p < command.params.size(); ++p) {
+        const bool may = (p == 3 && leaves_yaw) || (p == 2 && command.number == 85);
+        if (std::isnan(command.params[p]) && !may) {
+          return refuse("refused", "refuses the mission: parameter " + std::to_string(p + 1) +
+                                       " of this command is not a number");
+        }
+      }
+    } else if (flies && !command.has_position() && task != Task::take_off &&
+               task != Task::vtol_take_off) {
+      return refuse("position", "flies to latitude 0, longitude 0: this command has no position");
+    }
+    if (flies && !(std::abs(command.altitude_m) < 83'000)) {
+      return refuse("refused", "refuses the altitude of this command");
+    }
+    return true;
+  }
+
+  template <class Refuse>
+  bool check_flow(std::size_t n, const Refuse& refuse) {
+    const MissionCommand& command = commands_[n];
+    if (is_px4() && !command.auto_continue && n + 1 < commands_.size()) {
+      return refuse("never_ends", "stops here for ever (autoContinue is false)");
+    }
+    const Task task = commands_.task_of(n).task;
+    if (task == Task::jump && !commands_.target_of(n)) {
+      return refuse("refused", "finds no item to jump to");
+    }
+    if ((task == Task::arm && command.params[0] == 0) ||
+        (task == Task::engine && command.params[0] == 0 && !autopilot_.is_copter())) {
+      return refuse("unforeseeable", "stops the motor here");
+    }
+    return true;
+  }
+
+  bool refuse(std::size_t n, const std::string& why) {
+    flight_.remark(Weight::fails, "refused", n, autopilot_.name() + " " + why);
+    return false;
+  }
+
+  /// Height above sea level of a command's altitude.
+  double height_of(std::size_t n) const {
+    const MissionCommand& command = commands_[n];
+    return command.altitude_m + (formats::is_of_home(command.frame) ? flight_.home_ground : 0);
+  }
+
+  bool check_landing(std::size_t n, std::size_t before);
+
+  bool is_px4() const { return autopilot_.is_px4(); }
+
+  const Sequence& commands_;
+  Flight& flight_;
+  Autopilot autopilot_;
+};
+
+bool UploadCheck::check_landing(std::size_t n, std::size_t before) {
+  constexpr double kMaxSlope = 5.1;  // degrees: FW_LND_ANG and a tenth
+  const Task task = commands_.task_of(before).task;
+  if (task != Task::waypoint && task != Task::loiter_to_altitude) {
+    return refuse(n, "begins a landing at a waypoint or a loiter to altitude alone");
+  }
+  const Frame& frame = flight_.world().frame();
+  const auto [x, y] = frame.to_local(commands_[n].lon, commands_[n].lat);
+  const auto [from_x, from_y] = frame.to_local(commands_[before].lon, commands_[before].lat);
+  const double drop = height_of(before) - height_of(n);
+  const double run = std::hypot(x - from_x, y - from_y);
+  return (drop > 0 && drop <= run * std::tan(radians(kMaxSlope))) ||
+         refuse(n, "lands on a slope of 5.1 degrees or less alone, down from the item before");
+}
+
+bool UploadCheck::check_feasibility() {
+  std::optional<std::size_t> before;  // the last position
+  std::size_t starts = 0;
+  bool lands = false;
+  bool returns = false;
+  bool is_valid = true;
+  for (std::size_t n = 0; n < commands_.size(); ++n) {
+    const Task task = commands_.task_of(n).task;
+    const bool is_take_off = task == Task::take_off || task == Task::vtol_take_off;
+    const bool is_landing = task == Task::land || task == Task::vtol_land;
+    starts += task == Task::landing_start;
+    lands = lands || is_landing;
+    returns = returns || task == Task::return_home;
+    if (is_take_off && before) {
+      is_valid = refuse(n, "takes off at the first position of a mission alone");
+    }
+    if (is_take_off && height_of(n) <= flight_.home_ground) {
+      is_valid = refuse(n, "takes off to a height above home alone");
+    }
+    if (is_landing && !before) {
+      is_valid = refuse(n, "refuses a mission that begins with a landing");
+    }
+    if (task == Task::land && before && autopilot_.airframe == formats::Airframe::plane) {
+      is_valid = check_landing(n, *before) && is_valid;
+    }
+    before = formats::flies_to_position(task) ? std::optional(n) : before;
+  }
+  if (before && !autopilot_.is_copter() && !lands && !returns) {
+    is_valid = refuse(*before, "refuses a mission without a landing (MIS_TKO_LAND_REQ)");
+  }
+  if (before && (starts > 1 || (starts > 0 && !lands))) {
+    is_valid = refuse(*before, "refuses two landing starts, and one without a landing");
+  }
+  return is_valid;
+}
+}  // namespace
+
+std::vector<MissionCommand> stored(std::vector<MissionCommand> commands, Autopilot autopilot) {
+  for (MissionCommand& command : commands) {
+    command = stored_one(std::move(command), autopilot);
+  }
+  return commands;
+}
+
+bool check_upload(const Sequence& commands, Flight& flight) {
+  UploadCheck check(commands, flight);
+  bool is_taken = true;
+  for (std::size_t n = 0; n < commands.size(); ++n) {
+    is_taken = check.check(n) && is_taken;
+  }
+  return (!flight.autopilot().is_px4() || check.check_feasibility()) && is_taken;
+}
+}  // namespace altiplan::host

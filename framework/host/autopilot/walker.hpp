@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <utility>
+
+#include "host/autopilot/flight.hpp"
+#include "host/autopilot/sequence.hpp"
+#include "host/autopilot/upload.hpp"
+
+namespace altiplan::host {
+
+/// Flies the commands of a mission one after the other.
+class Walker {
+ public:
+  Walker(const formats::MissionFile& plan, formats::Autopilot autopilot, const World& world,
+         const FlightOptions& options)
+      : plan_(plan),
+        autopilot_(autopilot),
+        world_(world),
+        options_(options),
+        parameters_(autopilot, options.parameters),
+        flight_(mission_, world, parameters_),
+        commands_(stored(plan.commands, autopilot), autopilot) {
+    mission_.autopilot = autopilot;
+  }
+
+  FlownMission fly();
+
+ private:
+  bool is_px4() const { return autopilot_.is_px4(); }
+  double parameter(const char* name) const { return parameters_(name); }
+  formats::Task task_of(std::size_t n) const { return commands_.task_of(n).task; }
+
+  Eigen::Vector2d to_local(double lon, double lat) const;
+
+  void place_home();
+
+  // Destinations.
+
+  Eigen::Vector2d here() const;
+  double low() const { return is_winged_ ? wing_->low() : hover_ ? hover_->low : home_z_; }
+  double high() const { return is_winged_ ? wing_->high() : hover_ ? hover_->high : home_z_; }
+
+  /// ArduPilot's copter keeps its height where a command has altitude 0.
+  bool keeps_height(const formats::MissionCommand& command) const;
+
+  Destination destination(std::size_t n) const;
+
+  std::optional<Destination> next_destination(std::size_t n) const;
+
+  // The walk.
+
+  void walk();
+
+  void note_unflown(std::size_t n);
+
+  /// True if the flight ends here.
+  bool carry_out(std::size_t n);
+
+  /// A mission without a take-off begins where the vehicle is flown by hand; PX4's copter climbs.
+  void begin_in_the_air(std::size_t n);
+
+  bool take_off(std::size_t n);
+
+  /// ArduPilot's VTOL adds the number to its present height, whatever the frame says.
+  double top_of_take_off(std::size_t n, const Destination& to);
+
+  bool take_off_along_runway(std::size_t n);
+
+  void begin_to_wing(std::size_t, const Eigen::Vector2d& toward);
+
+  bool transition(std::size_t n);
+
+  bool delay(std::size_t n);
+
+  void set_home(std::size_t n);
+
+  // Speeds.
+
+  void set_hover_speed();
+
+  /// The cruise airspeed of the parameters; where none are given, the plan's own may be it.
+  void set_wing_speed();
+  double min_airspeed() const { return parameter(is_px4() ? "FW_AIRSPD_MIN" : "AIRSPEED_MIN"); }
+  double max_airspeed() const { return parameter(is_px4() ? "FW_AIRSPD_MAX" : "AIRSPEED_MAX"); }
+
+  void change_speed(std::size_t n);
+
+  /// A speed behind a condition may be lost: then both count.
+  void take_speed(bool counts, const double* speeds, double* present, double own) const;
+
+  // Hovering vehicles.
+
+  bool fly_hover(std::size_t n);
+
+  /// Flies straight to a place, unless it is there.
+  void arrive(std::size_t n, const Destination& to);
+
+  // Wings.
+
+  void fly_wing_to(std::size_t n, const char* what, const Destination& to, bool at_once);
+
+  bool fly_wing(std::size_t n);
+
+  bool circle_wing(std::size_t n, const Destination& to);
+
+  // The end.
+
+  void finish();
+
+  void return_home(std::size_t n);
+
+  /// Where a return may lead to.
+  struct Refuge {
+    Eigen::Vector2d at{0, 0};
+    std::optional<double> height_m;  ///< of a rally point, above home
+  };
+  /// Home or the nearest rally point, all those whose distances hardly differ.
+  std::vector<Refuge> refuges() const;
+  void return_hover(std::size_t n, const Refuge& refuge);
+  void return_wing(std::size_t n, const Refuge& refuge);
+
+  const formats::MissionFile& plan_;
+  formats::Autopilot autopilot_;
+  const World& world_;
+  const FlightOptions& options_;
+  Parameters parameters_;
+  FlownMission mission_;
+  Flight flight_;
+  Sequence commands_;
+  std::optional<Hover> hover_;
+  std::optional<Wing> wing_;
+  bool is_winged_ = false;
+  bool has_flown_ = false;
+  Eigen::Vector2d home_{0, 0};
+  double home_z_ = 0;
+  std::optional<double> former_home_z_;  ///< on which the next leg may still count
+  bool has_new_home_ = false;
+  bool is_pending_ = false;  ///< a condition delays what follows
+  double hover_speed_[2] = {0, 0};
+  double wing_speed_[2] = {0, 0};
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> flown_;
+};
+}  // namespace altiplan::host

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+// ArduPilot's aeroplane (AP_L1_Control, AP_TECS, altitude.cpp) and PX4's (FixedWingModeManager,
+// DirectionalGuidance). The ways that a plan leaves open, of speed and of when a turn begins, are
+// flown one by one with the autopilot's law of guidance (Park, Deyst and How 2004, equation 1).
+#include <algorithm>
+#include <cmath>
+
+#include "host/autopilot/flight.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr double kGravity = 9.80665;
+constexpr double kTimeStep = 0.4;  // seconds
+constexpr double kLevel = 0.05;    // metres
+constexpr double kOnTrack = 1;     // metres: the reach of the track itself
+constexpr double kReach = 5;       // metres: half of what lies between two members at a corner
+constexpr int kFractions = 9;      // of the distance at which a turn begins
+constexpr double kPx4HeightRadius = 10;  // NAV_FW_ALT_RAD
+constexpr double kPx4LevelBefore = 80;   // metres before an item at which its ramp has ended
+constexpr double kRunOut = 200;          // metres beyond a landing's point
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+Eigen::Vector2d unit(double heading) { return {std::cos(heading), std::sin(heading)}; }
+double bearing_of(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
+}  // namespace
+
+Wing::Wing(Flight& flight) : flight_(flight) {
+  const bool is_px4 = flight.autopilot().is_px4();
+  climb_mps_ = flight.parameter(is_px4 ? "FW_T_CLMB_R_SP" : "TECS_CLMB_MAX");
+  sink_mps_ = flight.parameter(is_px4 ? "FW_T_SINK_R_SP" : "TECS_SINK_MAX");
+  l1_s_ =
+      is_px4 ? 2.24 : 0.318 * flight.parameter("NAVL1_DAMPING") * flight.parameter("NAVL1_PERIOD");
+  const double v = flight.parameter(is_px4 ? "FW_AIRSPD_TRIM" : "AIRSPEED_CRUISE");
+  set_speed(v, v);
+}
+
+void Wing::set_speed(double slowest, double fastest) {
+  speed_mps[0] = slowest;
+  speed_mps[1] = fastest;
+}
+
+double Wing::max_turn_rate(double v) const {
+  const double bank =
+      radians(flight_.parameter(flight_.autopilot().is_px4() ? "FW_R_LIM" : "ROLL_LIMIT_DEG"));
+  return kGravity * std::tan(bank) / v;
+}
+
+void Wing::make_members(const std::function<Member(int, double)>& make) {
+  members_.clear();
+  const int speeds = speed_mps[0] < speed_mps[1] ? 2 : 1;
+  for (int speed = 2 - speeds; speed < 2; ++speed) {
+    for (int n = 0; n < kFractions; ++n) {
+      members_.push_back(make(speed, double(n) / (kFractions - 1)));
+    }
+  }
+}
+
+void Wing::start(const Eigen::Vector2d& at, double z, const Eigen::Vector2d& toward, bool is_item) {
+  make_members([&](int speed, double fraction) {
+    return Member{at, bearing_of(toward - at), z, z, speed, fraction};
+  });
+  from_ = {at, z, z, {}};
+  has_track_ = is_item;
+}
+
+void Wing::start_on(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double z) {
+  const double heading = bearing_of(to - from);
+  make_members([&](int speed, double fraction) {
+    return Member{from + fraction * (to - from),
+                  heading + radians(20 * fraction - 10),
+                  z,
+                  z,
+                  speed,
+                  fraction};
+  });
+  from_ = {from, z, z, {}};
+  has_track_ = false;
+}
+
+Eigen::Vector2d Wing::mean_place() const {
+  Eigen::Vector2d sum(0, 0);
+  for (const Member& member : members_) {
+    sum += member.at;
+  }
+  return sum / double(std::max<std::size_t>(members_.size(), 1));
+}
+
+double Wing::low() const {
+  double low = kInfinity;
+  for (const Member& member : members_) {
+    low = std::min(low, member.low);
+  }
+  return low;
+}
+
+double Wing::high() const {
+  double high = -kInfinity;
+  for (const Member& member : members_) {
+    high = std::max(high, member.high);
+  }
+  return high;
+}
+
+double Wing::turn_distance(double v, const Leg& leg) const {
+  if (flight_.autopilot().is_px4()) {
+    return std::max(flight_.parameter("NAV_ACC_RAD"), l1_s_ * v);
+  }
+  if (leg.pass_by_m > 0) {
+    return 0;
+  }
+  if (leg.acceptance_m > 0) {
+    return leg.acceptance_m;
+  }
+  double angle = kPi / 2;
+  if (leg.next && !leg.turns_at_90) {
+    const Eigen::Vector2d in = leg.to.at - from_.at;
+    const Eigen::Vector2d out = leg.next->at - leg.to.at;
+    angle = std::abs(std::atan2(cross(in, out), in.dot(out)));
+  }
+  return std::min(flight_.parameter("WP_RADIUS"), l1_s_ * v) * std::min(angle, kPi / 2) / (kPi / 2);
+}
+
+double Wing::sought_height(const Leg& leg, const Eigen::Vector2d& at, double share) const {
+  if (leg.to.above_ground) {
+    const double from = from_.above_ground.value_or(from_.low - flight_.ground(from_.at));
+    return flight_.ground(at) + from + share * (*leg.to.above_ground - from);
+  }
+  const double rise = leg.to.low - from_.low;
+  if (flight_.autopilot().is_px4()) {
+    const double length = (leg.to.at - from_.at).norm();
+    const double level = std::max(kPx4LevelBefore, l1_s_ * speed_mps[1]);
+    if (leg.at_once || !has_track_ || length <= level) {
+      return leg.to.low;
+    }
+    return from_.low + rise * std::min(1.0, share * length / (length - level));
+  }
+  return leg.at_once || std::abs(rise) < flight_.parameter("ALT_SLOPE_MIN")
+             ? leg.to.low
+             : from_.low + share * rise;
+}
+
+void Wing::seek_heights(Member& member, double sought, double seconds) const {
+  const double lag = flight_.autopilot().is_px4() ? 1 : flight_.parameter("TECS_HDEM_TCONST");
+  const double slow = std::clamp((sought - member.low) / lag, -sink_mps_, climb_mps_);
+  const double fast = std::clamp((sought - member.high) / lag, -sink_mps_, climb_mps_);
+  member.low += slow * seconds;
+  member.high += fast * seconds;
+}
+
+double Wing::fly(Member& member, const Leg& leg) {
+  const double v = speed_mps[member.speed];
+  const double distance = member.fraction * turn_distance(v, leg);
+  const Eigen::Vector2d begin = has_track_ ? from_.at : member.at;
+  const Eigen::Vector2d along = leg.to.at - begin;
+  const double length = std::max(along.norm(), 1e-6);
+  const Eigen::Vector2d track = along / length;
+  const double finish = length + leg.pass_by_m;
+  const double l1 = l1_s_ * v;
+  const double max_rate = max_turn_rate(v);
+  const bool is_rough = leg.to.above_ground.has_value();
+  const int max_steps = int((4 * (length + (member.at - begin).norm()) / v + 200) / kTimeStep);
+  Vec3 before(member.at.x(), member.at.y(), member.low);
+  double before_high = member.high;
+  double drawn_heading = member.heading;
+  double seconds = 0;
+  double undrawn = 0;
+  bool was_on_line = false;
+  for (int step = 0; step < max_steps; ++step) {
+    const Eigen::Vector2d off = member.at - begin;
+    const double done = off.dot(track);
+    if ((leg.to.at - member.at).norm() <= distance || done >= finish) {
+      break;
+    }
+    // Steer to the place on the track that lies the distance of guidance ahead.
+    const double beside = cross(track, off);
+    const double to_track = std::asin(std::clamp(beside / l1, -0.7071, 0.7071));
+    const Eigen::Vector2d velocity = unit(member.heading);
+    const double from_track = std::atan2(cross(track, velocity), track.dot(velocity));
+    const double eta =
+        std::clamp(std::remainder(-(from_track + to_track), 2 * kPi), -kPi / 2, kPi / 2);
+    const double rate = std::clamp(2.25 * v / l1 * std::sin(eta), -max_rate, max_rate);
+    const double dt = std::min(kTimeStep, std::max((finish - done) / v, 0.02));
+    const double turned = rate * dt;
+    member.at += v * dt * unit(member.heading + turned / 2);
+    member.heading += turned;
+    seconds += dt;
+    undrawn += v * dt;
+    const double share = std::clamp((member.at - begin).dot(track) / length, 0.0, 1.0);
+    const double sought = sought_height(leg, member.at, share);
+    const double old_low = member.low;
+    const double old_high = member.high;
+    seek_heights(member, sought, dt);
+    const bool is_level =
+        std::abs(member.low - old_low) < 1e-3 && std::abs(member.high - old_high) < 1e-3;
+    const bool bends = std::abs(member.heading - drawn_heading) > 0.05;
+    if (bends || !is_level || (is_rough && undrawn > 15) || undrawn > 200) {
+      const double line =
+          leg.at_once || is_rough ? sought : from_.low + share * (leg.to.low - from_.low);
+      const Vec3 here(member.at.x(), member.at.y(), std::min({member.low, sought, line}));
+      const double here_high = std::max({member.high, sought, line});
+      const double nominal = from_.low + share * (leg.to.low - from_.low);
+      const bool is_on_line = has_track_ && !is_rough &&
+                              std::abs(cross(track, member.at - begin)) < kOnTrack &&
+                              std::max(here_high - nominal, nominal - here.z()) < kLevel;
+      if (!(was_on_line && is_on_line)) {  // else the track itself covers it
+        flight_.add_strip(before, before_high, here, here_high, kReach);
+      }
+      was_on_line = is_on_line;
+      before = here;
+      before_high = here_high;
+      drawn_heading = member.heading;
+      undrawn = 0;
+    }
+  }
+  const bool is_on_line = was_on_line && member.high - member.low < kLevel &&
+                          std::abs(member.low - leg.to.low) < kLevel;
+  if (!is_on_line) {
+    flight_.add_strip(before, before_high, {member.at.x(), member.at.y(), member.low}, member.high,
+                      kReach);
+  }
+  return seconds;
+}
+
+void Wing::circle_until_high(std::size_t command, const Leg& leg) {
+  const double off = std::max(std::abs(low() - leg.to.low), std::abs(high() - leg.to.low));
+  if (!flight_.autopilot().is_px4() || leg.to.above_ground || off <= kPx4HeightRadius) {
+    return;
+  }
+  circle(command, "its circle until the height is reached", leg.to,
+         flight_.parameter("NAV_LOITER_RAD"), true, 0, off / std::min(climb_mps_, sink_mps_),
+         leg.next, false);
+}
+
+void Wing::cut_corner(const Leg& leg) {
+  if (!before_) {
+    return;
+  }
+  const Vec3 corner = from_.point();
+  const Vec3 back = before_->point() - corner;
+  const Vec3 onward = leg.to.point() - corner;
+  const double room_back = back.head<2>().norm();
+  const double room_onward = onward.head<2>().norm();
+  if (room_back < 1 || room_onward < 1) {
+    return;
+  }
+  const int chords = int(std::ceil(cut_m_ / kReach));
+  for (int n = 1; n <= chords; ++n) {
+    const double before = cut_m_ * n / chords;
+    const Vec3 a = corner + back * std::min(1.0, before / room_back);
+    const Vec3 b = corner + onward * std::min(1.0, before / room_onward);
+    flight_.add_strip({a.x(), a.y(), std::min(a.z(), corner.z())}, std::max(a.z(), corner.z()),
+                      {b.x(), b.y(), std::min(b.z(), corner.z())}, std::max(b.z(), corner.z()),
+                      kReach);
+  }
+}
+
+void Wing::go(std::size_t command, const char* what, const Leg& leg) {
+  flight_.begin(command, what);
+  if (has_track_) {
+    cut_corner(leg);
+  }
+  if (has_track_) {
+    // The track itself, which the latest turn overshoots and the first one cuts.
+    const Vec3 a = from_.point();
+    if (!leg.to.above_ground && !from_.above_ground) {
+      flight_.add_leg(a, a.z(), leg.to.point(), leg.to.low, 1);
+    }
+  }
+  TimeSpan time{kInfinity, 0};
+  for (Member& member : members_) {
+    const double seconds = fly(member, leg);
+    time.min_s = std::min(time.min_s, 0.95 * seconds);
+    time.max_s = std::max(time.max_s, 1.05 * seconds + 2);
+  }
+  flight_.take(time);
+  const double length = (leg.to.at - from_.at).norm();
+  const double rise = leg.to.low - from_.low;
+  const double limit = rise > 0 ? climb_mps_ : sink_mps_;
+  const double needed = length > 0 ? std::abs(rise) / length * speed_mps[1] : 0;
+  if (has_track_ && !flight_.autopilot().is_px4() && !leg.to.above_ground && needed > limit) {
+    flight_.remark(Remark::Weight::fails, rise > 0 ? "climb_rate" : "sink_rate", command,
+                   std::string(rise > 0 ? "climbs" : "sinks") +
+                       " faster than the autopilot's limit (" +
+                       (rise > 0 ? "TECS_CLMB_MAX" : "TECS_SINK_MAX") +
+                       "): the item is passed at another height",
+                   needed, limit);
+  }
+  before_ = has_track_ ? std::optional(from_) : std::nullopt;
+  cut_m_ = turn_distance(speed_mps[1], leg);
+  circle_until_high(command, leg);
+  from_ = leg.to;
+  if (leg.to.above_ground) {
+    from_.low = from_.high = flight_.ground(leg.to.at) + *leg.to.above_ground;
+  }
+  has_track_ = true;
+}
+
+void Wing::circle(std::size_t command, const char* what, const Destination& centre, double radius,
+                  bool clockwise, double turns, double seconds,
+                  const std::optional<Destination>& next, bool leaves_on_tangent) {
+  flight_.begin(command, what);
+  const double z =
+      centre.above_ground ? flight_.ground(centre.at) + *centre.above_ground : centre.low;
+  const double bottom = std::min(low(), z);
+  const double top = std::max({high(), z, centre.high});
+  const double widest = std::max(radius, speed_mps[1] / max_turn_rate(speed_mps[1])) * 1.1;
+  // A small circle is joined from within; a large one along a tangent, or beyond it.
+  const double inner = radius < 150 ? 0 : 0.75 * radius;
+  flight_.add_disc(centre.at, inner, widest, bottom, top);
+  const double round = 2 * kPi * radius;
+  const double climb =
+      std::max(std::abs(bottom - z), std::abs(top - z)) / std::min(climb_mps_, sink_mps_);
+  flight_.take({seconds + turns * round / speed_mps[1] * 0.9,
+                seconds + climb + (turns + 1) * round / speed_mps[0] * 1.1});
+  const double sense = clockwise ? -1 : 1;
+  for (Member& member : members_) {
+    Eigen::Vector2d p = member.at;
+    for (int n = 0; n < 4; ++n) {
+      const Eigen::Vector2d toward = next ? next->at - p : unit(member.heading);
+      const double heading = bearing_of(toward) + (member.fraction - 0.5) * radians(20);
+      p = centre.at + radius * unit(heading - sense * kPi / 2);
+      member.heading = heading;
+    }
+    member.at = p;
+    member.low = member.high = z;
+  }
+  from_ = centre;
+  before_.reset();
+  from_.low = from_.high = z;
+  if (leaves_on_tangent) {
+    from_.at = mean_place();
+  }
+  has_track_ = true;
+}
+
+void Wing::land(std::size_t command, const Destination& to) {
+  FlownPart& part = flight_.begin(command, "the landing");
+  part.ground = FlownPart::Ground::touched_along;
+  const Eigen::Vector2d begin = from_.at;
+  const double foot = std::min(to.low, flight_.ground(to.at));
+  const Vec3 touch(to.at.x(), to.at.y(), std::max(to.low, foot));
+  flight_.add_strip({begin.x(), begin.y(), low()}, high(), touch, touch.z(), kReach);
+  const double length = (to.at - begin).norm();
+  flight_.take({length / speed_mps[1], length / speed_mps[0] * 1.5 + 30});
+  // It rolls out on the ground, or a little above.
+  Vec3 before = touch;
+  for (int step = 1; step <= 10; ++step) {
+    const Eigen::Vector2d beyond = to.at + kRunOut * step / 10 * (to.at - begin).normalized();
+    const Vec3 here(beyond.x(), beyond.y(), flight_.ground(beyond));
+    flight_.add_strip(before, before.z() + 2, here, here.z() + 2, kReach);
+    before = here;
+  }
+}
+
+void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double heading, double z,
+                    double spread) {
+  FlownPart& part = flight_.begin(command, "the climb after take-off");
+  part.ground = FlownPart::Ground::touched_along;
+  const double foot = flight_.ground(from);
+  const double height = std::max(z - foot, 1.0);
+  const bool is_px4 = flight_.autopilot().is_px4();
+  const double steep =
+      is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0] : std::tan(radians(20));
+  const double shallow = is_px4 ? 2 / speed_mps[1] : std::tan(radians(4));
+  constexpr int kRays = 5;
+  for (int ray = 0; ray < kRays; ++ray) {
+    const double course = heading + spread * (2.0 * ray / (kRays - 1) - 1);
+    const Vec3 near(from.x() + height / steep * std::cos(course),
+                    from.y() + height / steep * std::sin(course), foot + shallow * height / steep);
+    const Vec3 far(from.x() + height / shallow * std::cos(course),
+                   from.y() + height / shallow * std::sin(course), z);
+    flight_.add_strip({from.x(), from.y(), foot}, foot, near, z, kReach);
+    flight_.add_strip(near, z, far, z, kReach);
+  }
+  const double v = speed_mps[1];
+  flight_.take({height / steep / v, height / shallow / speed_mps[0] + 10});
+  start_on(from + height / steep * unit(heading), from + height / shallow * unit(heading), z);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/gate/band_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/ground.hpp"
+#include "altiplan/nearest_place.hpp"
+
+namespace altiplan::host {
+namespace {
+
+constexpr double kRise = 8;     // metres between lines of one strip, one above the other
+constexpr double kTouch = 1;    // metres: where a slanted landing ends
+constexpr int kLookedAt = 4;    // lines
+constexpr double kGrain = 0.5;  // metres: reaches are rounded up to it
+
+/// The same rule's violation of a part of a leg, if it is violated there.
+std::optional<Violation> same_of_part(const Vec3& a, const Vec3& b, const Violation& whole,
+                                      const Request& request) {
+  for (const Violation& found : leg_violations(std::nullopt, a, b, request, whole.at)) {
+    if (found.constraint == whole.constraint) {
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The place, within a metre, at which the violation is as bad as on the whole leg: of two halves
+/// the one whose value is nearer to the leg's. The middle of the leg where no part violates it.
+Vec3 worst_place(Vec3 a, Vec3 b, const Violation& whole, const Request& request) {
+  constexpr double kNear = 1;
+  while ((b - a).norm() > kNear) {
+    const Vec3 middle = (a + b) / 2;
+    const auto first = same_of_part(a, middle, whole, request);
+    const auto second = same_of_part(middle, b, whole, request);
+    if (!first && !second) {
+      break;  // by its whole
+    }
+    const auto off = [&](const std::optional<Violation>& part) {
+      return part ? std::abs(part->value - whole.value) : kInfinity;
+    };
+    (off(first) <= off(second) ? b : a) = middle;
+  }
+  return (a + b) / 2;
+}
+
+/// Keeps the worst of each rule and layer.
+template <class Worst, class Line>
+void keep_worst(std::vector<Worst>& worst, Violation violation, const Line& line) {
+  const auto badness = [](const Violation& v) { return std::abs(v.value - v.limit); };
+  const auto same = std::find_if(worst.begin(), worst.end(), [&](const Worst& other) {
+    return other.violation.constraint == violation.constraint &&
+           other.violation.layer == violation.layer;
+  });
+  if (same == worst.end()) {
+    worst.push_back({std::move(violation), line});
+  } else if (badness(violation) > badness(same->violation)) {
+    *same = {std::move(violation), line};
+  }
+}
+}  // namespace
+
+BandJudge::BandJudge(const Request& request)
+    : request_(request), sky_(*request.world), ground_(*request.world) {
+  request_.limits = Limits{};
+  request_.limits.min_clearance = request.limits.min_clearance;
+  request_.limits.min_ground_clearance = request.limits.min_ground_clearance;
+  request_.limits.altitude = request.limits.altitude;
+  for (const Layer& layer : request.world->layers()) {
+    World& other = layer.environment->ground() != nullptr ? sky_ : ground_;
+    other = other.without(layer.id);
+  }
+}
+
+const BandJudge::Requests& BandJudge::within(double reach_m) const {
+  const double reach = std::ceil(reach_m / kGrain) * kGrain;
+  const auto found = by_reach_.find(reach);
+  if (found != by_reach_.end()) {
+    return found->second;
+  }
+  Requests requests{request_, request_, request_};
+  for (Request* request : {&requests.all, &requests.sky, &requests.ground}) {
+    request->vehicle.radius_m += reach;
+    request->limits.min_clearance += reach;
+  }
+  requests.sky.world = std::make_shared<const World>(sky_);
+  requests.sky.limits.min_ground_clearance.reset();
+  requests.sky.limits.altitude.clear();
+  requests.sky.constraints.clear();
+  requests.ground.world = std::make_shared<const World>(ground_);
+  return by_reach_.emplace(reach, std::move(requests)).first->second;
+}
+
+std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_ground) {
+  std::vector<Line> lines;
+  const Vec3 along(strip.to.x() - strip.from.x(), strip.to.y() - strip.from.y(), 0);
+  if (along.norm() == 0) {
+    lines.push_back(
+        {Leg::straight(strip.from, {strip.to.x(), strip.to.y(), strip.to_high_m}), strip.reach_m});
+    return lines;
+  }
+  const double rise = std::max(strip.from_high_m - strip.from.z(), strip.to_high_m - strip.to.z());
+  const int count = 1 + int(std::ceil(std::max(rise - 1e-6, 0.0) / kRise));
+  const double reach = std::max(strip.reach_m, count > 1 ? rise / (count - 1) / 2 : 0);
+  const Vec3 aside = strip.reach_m > 0 && has_ground
+                         ? Vec3(Vec3(-along.y(), along.x(), 0).normalized() * strip.reach_m)
+                         : Vec3(0, 0, 0);
+  for (int n = 0; n < count; ++n) {
+    const double share = count > 1 ? double(n) / (count - 1) : 0;
+    const Vec3 up_from(0, 0, share * (strip.from_high_m - strip.from.z()));
+    const Vec3 up_to(0, 0, share * (strip.to_high_m - strip.to.z()));
+    lines.push_back({Leg::straight(strip.from + up_from, strip.to + up_to), reach});
+    if (aside.norm() > 0 && (n == 0 || n + 1 == count)) {  // the ground beside it
+      for (const double side : {-1.0, 1.0}) {
+        lines.push_back(
+            {Leg::straight(strip.from + up_from + side * aside, strip.to + up_to + side * aside),
+             0});
+      }
+    }
+  }
+  return lines;
+}
+
+void BandJudge::judge_sky(const Line& line, std::vector<Worst>& worst) const {
+  const Request& sky = within(line.reach_m).sky;
+  if (looked_at_ >= kLookedAt || leg_ok(std::nullopt, line.leg, sky)) {
+    return;
+  }
+  ++looked_at_;
+  for (Violation& violation : leg_violations(std::nullopt, line.leg, sky, 0)) {
+    keep_worst(worst, std::move(violation), line);
+  }
+}
+
+void BandJudge::judge_end(const Line& line, FlownPart::Ground ground,
+                          std::vector<Worst>& worst) const {
+  judge_sky(line, worst);
+  if (is_too_high(line.leg)) {
+    for (Violation& violation : leg_violations(std::nullopt, line.leg, within(0).ground, 0)) {
+      if (violation.constraint == "altitude" && violation.value > violation.limit) {
+        keep_worst(worst, std::move(violation), line);
+      }
+    }
+  }
+  if (ground == FlownPart::Ground::touched_along && is_below_ground(line.leg)) {
+    Violation violation;
+    violation.constraint = "ground";
+    violation.value = request_.world->ground_gap(line.leg.from, line.leg.to);
+    violation.unit = "m";
+    violation.message = "goes through the ground, or beyond what is known of it";
+    keep_worst(worst, std::move(violation), line);
+  }
+}
+
+bool BandJudge::is_too_high(const Leg& leg) const {
+  return std::any_of(request_.limits.altitude.begin(), request_.limits.altitude.end(),
+                     [&](const AltitudeBand& band) {
+                       const double height = band.datum == AltitudeBand::Datum::sea
+                                                 ? std::max(leg.from.z(), leg.to.z())
+                                                 : request_.world->ground_gap_max(leg.from, leg.to);
+                       return band.max < kInfinity && height > band.max + kLengthTolerance;
+                     });
+}
+
+bool BandJudge::is_below_ground(const Leg& leg) const {
+  return request_.world->has_ground() && !(request_.world->ground_gap(leg.from, leg.to) >= -kTouch);
+}
+
+void BandJudge::judge_line(const Line& line, FlownPart::Ground ground,
+                           std::vector<Worst>& worst) const {
+  if (ground != FlownPart::Ground::kept_off) {
+    judge_end(line, ground, worst);
+    return;
+  }
+  const Requests& requests = within(line.reach_m);
+  if (leg_ok(std::nullopt, line.leg, requests.all)) {
+    return;
+  }
+  judge_sky(line, worst);
+  for (Violation& violation : leg_violations(std::nullopt, line.leg, requests.ground, 0)) {
+    keep_worst(worst, std::move(violation), line);
+  }
+}
+
+Vec3 BandJudge::place_of(const Worst& worst) const {
+  const auto& [violation, line] = worst;
+  const Layer* layer = request_.world->find(violation.layer);
+  if (violation.constraint == "clearance" && layer != nullptr) {
+    const double share =
+        nearest_share(*layer->environment, line.leg.from, line.leg.to, violation.value);
+    return line.leg.at(share);
+  }
+  return worst_place(line.leg.from, line.leg.to, violation, within(line.reach_m).ground);
+}
+
+std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const {
+  std::vector<Worst> worst;
+  looked_at_ = 0;
+  for (const Strip& strip : part.strips) {
+    for (const Line& line : lines_of(strip, request_.world->has_ground())) {
+      judge_line(line, part.ground, worst);
+    }
+  }
+  std::vector<Found> found;
+  for (const Worst& one : worst) {
+    found.push_back({one.violation, place_of(one)});
+  }
+  return found;
+}
+
+bool BandJudge::is_valid(const FlownPart& part) const {
+  using Ground = FlownPart::Ground;
+  const auto is_line_valid = [&](const Line& line) {
+    const Requests& requests = within(line.reach_m);
+    return part.ground == Ground::kept_off
+               ? leg_ok(std::nullopt, line.leg, requests.all)
+               : leg_ok(std::nullopt, line.leg, requests.sky) && !is_too_high(line.leg) &&
+                     !(part.ground == Ground::touched_along && is_below_ground(line.leg));
+  };
+  return std::all_of(part.strips.begin(), part.strips.end(), [&](const Strip& strip) {
+    const auto lines = lines_of(strip, request_.world->has_ground());
+    return std::all_of(lines.begin(), lines.end(), is_line_valid);
+  });
+}
+
+LegHeights BandJudge::heights(const FlownPart& part) const {
+  LegHeights heights;
+  const World& world = *request_.world;
+  if (!world.has_ground()) {
+    return heights;
+  }
+  for (const Strip& strip : part.strips) {
+    heights.lowest = std::min(heights.lowest, world.ground_gap(strip.from, strip.to));
+    heights.highest = std::max(
+        heights.highest, world.ground_gap_max({strip.from.x(), strip.from.y(), strip.from_high_m},
+                                              {strip.to.x(), strip.to.y(), strip.to_high_m}));
+  }
+  return heights;
+}
+}  // namespace altiplan::host

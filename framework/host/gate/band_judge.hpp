@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "altiplan/check.hpp"
+#include "host/autopilot/flown_mission.hpp"
+
+namespace altiplan::host {
+
+/// Heights above the ground, metres; not finite without ground below the whole part.
+struct LegHeights {
+  double lowest = kInfinity;
+  double highest = -kInfinity;
+};
+
+/// Judges parts of a flight: the whole band that the vehicle may pass.
+class BandJudge {
+ public:
+  /// The request's limits on clearance and height, and its constraints, count; those on turns,
+  /// climbs and lengths are of drawn routes.
+  explicit BandJudge(const Request& request);
+
+  /// A violation, and a place within a metre where it is as bad as anywhere on its leg.
+  struct Found {
+    Violation violation;
+    Vec3 at;
+  };
+  /// The worst of each rule and layer. Where the vehicle takes off or lands, its height and the
+  /// ground do not count, but that a slanted path is not below the ground.
+  std::vector<Found> violations(const FlownPart& part) const;
+  /// True if there is none; quicker.
+  bool is_valid(const FlownPart& part) const;
+  LegHeights heights(const FlownPart& part) const;
+
+ private:
+  /// A leg, and how far about it the vehicle may be.
+  struct Line {
+    Leg leg;
+    double reach_m;
+  };
+  /// The request, in the whole world and in parts of it, for a vehicle that may be some metres off.
+  struct Requests {
+    Request all;
+    Request sky;     ///< clearance from the layers without ground
+    Request ground;  ///< the rest
+  };
+  struct Worst {
+    Violation violation;
+    Line line;
+  };
+
+  static std::vector<Line> lines_of(const Strip& strip, bool has_ground);
+  const Requests& within(double reach_m) const;
+  void judge_line(const Line& line, FlownPart::Ground ground, std::vector<Worst>& worst) const;
+  void judge_end(const Line& line, FlownPart::Ground ground, std::vector<Worst>& worst) const;
+  /// True if a leg is above a maximum height.
+  bool is_too_high(const Leg& leg) const;
+  bool is_below_ground(const Leg& leg) const;
+  /// The sky's violations, of the first lines that have one: to find out how bad one is takes long.
+  void judge_sky(const Line& line, std::vector<Worst>& worst) const;
+  Vec3 place_of(const Worst& worst) const;
+
+  Request request_;
+  World sky_;     ///< its layers without ground
+  World ground_;  ///< the others
+  mutable std::map<double, Requests> by_reach_;
+  mutable int looked_at_ = 0;  ///< lines of this part whose violations of the sky are known
+};
+}  // namespace altiplan::host

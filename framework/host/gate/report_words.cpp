@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/gate/plan_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/error.hpp"
+#include "host/base/words.hpp"
+
+namespace altiplan::host {
+
+using formats::MissionCommand;
+using formats::MissionItem;
+
+Verdict PlanReport::verdict() const {
+  const bool fails = std::any_of(findings.begin(), findings.end(),
+                                 [](const Finding& finding) { return !finding.is_unjudged; });
+  return fails ? Verdict::fail : findings.empty() ? Verdict::pass : Verdict::not_judged;
+}
+
+const char* word_of(Verdict verdict) {
+  return verdict == Verdict::pass ? "pass" : verdict == Verdict::fail ? "fail" : "not judged";
+}
+
+std::string time_in_words(const TimeSpan& time) {
+  const auto minutes = [](double seconds) { return with_decimals(seconds / 60, 1); };
+  if (!std::isfinite(time.max_s)) {
+    return std::isfinite(time.min_s) ? minutes(time.min_s) + " min or more" : "without end";
+  }
+  return minutes(time.min_s) + " to " + minutes(time.max_s) + " min";
+}
+
+std::string PlanReport::name_of(std::size_t command) const {
+  return name_of_command(commands[command]);
+}
+
+std::string PlanReport::name_of_point(std::size_t waypoint) const {
+  if (waypoint < imported.items.size()) {
+    const MissionItem& item = imported.items[waypoint];
+    for (const MissionCommand& command : commands) {
+      if (command.place == item.place) {
+        return name_of_command(command);
+      }
+    }
+  }
+  return "waypoint " + std::to_string(waypoint);
+}
+
+std::string PlanReport::height_in_words() const {
+  const bool is_unknown = std::any_of(findings.begin(), findings.end(),
+                                      [](const Finding& finding) { return finding.is_over_void; });
+  return is_unknown                ? "over unknown ground"
+         : std::isfinite(lowest_m) ? "at least " + with_decimals(lowest_m, 1) + " m above ground"
+                                   : "height above ground unknown";
+}
+
+void expect_route(const std::string& file, const formats::MissionFile& plan) {
+  if (!plan.route_problem.empty() && plan.commands.empty()) {
+    throw Error(file + ": " + plan.route_problem);
+  }
+  if (plan.items.empty()) {
+    throw Error(file + ": it contains no route" +
+                (plan.moves.empty()
+                     ? !plan.zones.empty()   ? ": it contains only zones"
+                       : !plan.rally.empty() ? ": it contains only rally points"
+                                             : ""
+                     : ", and where " + plan.moves.front().place + " flies is not judged"));
+  }
+}
+}  // namespace altiplan::host

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// How autopilots fly missions: figures of ArduPilot 4.7 and PX4 1.16 at their default parameters.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "host/autopilot/flown_mission.hpp"
+
+namespace altiplan::host::flown_mission_test {
+namespace {
+
+using formats::Airframe;
+using formats::Autopilot;
+using formats::Firmware;
+using formats::MissionCommand;
+
+constexpr double kLon = 8;
+constexpr double kLat = 47;
+constexpr double kHome = 400;  // metres above sea level
+constexpr Autopilot kCopter{Firmware::ardupilot, Airframe::copter};
+constexpr Autopilot kPlane{Firmware::ardupilot, Airframe::plane};
+constexpr Autopilot kQuadplane{Firmware::ardupilot, Airframe::vtol};
+constexpr Autopilot kPx4Copter{Firmware::px4, Airframe::copter};
+
+const World& flat() {
+  static const World world = World().with_frame(Frame::geographic(kLon, kLat, kLat));
+  return world;
+}
+
+/// A command at metres east and north of home.
+MissionCommand command(int number, double x, double y, double height, int frame = 3) {
+  MissionCommand made;
+  made.number = number;
+  made.frame = frame;
+  const auto [lon, lat] = flat().frame().to_lonlat(x, y);
+  made.lon = lon;
+  made.lat = lat;
+  made.altitude_m = height;
+  return made;
+}
+
+/// A command without a place.
+MissionCommand order(int number, std::array<double, 4> params) {
+  MissionCommand made;
+  made.number = number;
+  made.frame = 2;
+  made.params = params;
+  return made;
+}
+
+FlownMission fly(std::vector<MissionCommand> commands, Autopilot autopilot,
+                 const FlightOptions& options = {}) {
+  formats::MissionFile plan;
+  plan.home = {kLon, kLat, kHome, formats::AltitudeFrame::sea};
+  for (std::size_t n = 0; n < commands.size(); ++n) {
+    commands[n].item = int(n) + 1;
+    commands[n].place = "item " + std::to_string(n + 1);
+  }
+  plan.commands = std::move(commands);
+  return fly_mission(plan, autopilot, flat(), options);
+}
+
+const FlownPart& part(const FlownMission& flown, const std::string& what) {
+  for (const FlownPart& one : flown.parts) {
+    if (one.what == what) {
+      return one;
+    }
+  }
+  throw std::runtime_error("no part '" + what + "'");
+}
+
+bool has_rule(const FlownMission& flown, const std::string& rule) {
+  return std::any_of(flown.remarks.begin(), flown.remarks.end(),
+                     [&](const Remark& remark) { return remark.rule == rule; });
+}
+
+/// The least distance in plan between a place and the ways between items.
+double distance_to(const FlownMission& flown, double x, double y) {
+  double nearest = kInfinity;
+  const Eigen::Vector2d p(x, y);
+  for (const FlownPart& one : flown.parts) {
+    for (const Strip& strip : one.what.empty() ? one.strips : std::vector<Strip>{}) {
+      const Eigen::Vector2d a = strip.from.head<2>();
+      const Eigen::Vector2d along = strip.to.head<2>() - a;
+      const double share =
+          along.norm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+      nearest = std::min(nearest, (a + share * along - p).norm());
+    }
+  }
+  return nearest;
+}
+
+double highest(const FlownPart& one) {
+  double high = -kInfinity;
+  for (const Strip& strip : one.strips) {
+    high = std::max({high, strip.from_high_m, strip.to_high_m});
+  }
+  return high;
+}
+
+TEST(FlownMission, ACopterOfArduPilotTakesOffWhereItStands) {
+  const std::vector<MissionCommand> commands{command(22, 300, 0, 40), command(16, 300, 300, 40)};
+  EXPECT_LT(distance_to(fly(commands, kCopter), 150, 150), 1);      // straight to the second item
+  EXPECT_GT(distance_to(fly(commands, kPx4Copter), 150, 150), 90);  // PX4 flies to the first
+}
+
+TEST(FlownMission, AQuadplaneAddsTheNumberOfItsTakeOffToItsHeight) {
+  const FlownMission flown =
+      fly({command(84, 0, 0, 480, 0), command(16, 900, 0, 480, 0)}, kQuadplane);
+  EXPECT_NEAR(highest(flown.parts.front()), kHome + 480, 0.1);
+  EXPECT_TRUE(has_rule(flown, "take_off_frame"));
+}
+
+TEST(FlownMission, AReturnClimbsToTheAutopilotsHeight) {
+  const std::vector<MissionCommand> commands{command(22, 0, 0, 10), command(16, 800, 0, 10),
+                                             order(20, {0, 0, 0, 0})};
+  EXPECT_NEAR(highest(part(fly(commands, kCopter), "the way home")), kHome + 15, 0.1);
+  EXPECT_NEAR(highest(part(fly(commands, kPx4Copter), "the way home")), kHome + 30, 0.1);
+  FlightOptions options;
+  options.parameters["RTL_ALT"] = 5000;  // ArduPilot 4.6 and before, centimetres
+  EXPECT_NEAR(highest(part(fly(commands, kCopter, options), "the way home")), kHome + 50, 0.1);
+}
+
+TEST(FlownMission, APlaneCutsACornerByItsDistanceOfGuidance) {
+  const std::vector<MissionCommand> commands{command(16, -2000, 0, 100), command(16, 0, 0, 100),
+                                             command(16, 0, 2000, 100)};
+  FlightOptions fast;
+  fast.parameters["AIRSPEED_CRUISE"] = 20;
+  // At 20 m/s it begins to turn 81 m before the item: its chord passes 57 m from the corner.
+  EXPECT_LT(distance_to(fly(commands, kPlane, fast), -57 / std::sqrt(2), 57 / std::sqrt(2)), 8);
+  // At 12 m/s it passes 35 m from it, and keeps off the other place.
+  EXPECT_GT(distance_to(fly(commands, kPlane), -57 / std::sqrt(2), 57 / std::sqrt(2)), 12);
+  FlightOptions narrow;
+  narrow.parameters["WP_RADIUS"] = 10;
+  EXPECT_GT(distance_to(fly(commands, kPlane, narrow), -20, 20), 8);
+}
+
+TEST(FlownMission, APlaneChangesItsHeightAtOnceBelow15Metres) {
+  const auto low_after = [](double drop) {
+    const FlownMission flown = fly(
+        {command(16, 0, 0, 100 + drop), command(16, 100, 0, 100 + drop), command(16, 2100, 0, 100)},
+        kPlane);
+    double low = kInfinity;  // 400 m along the last way
+    for (const FlownPart& one : flown.parts) {
+      for (const Strip& strip : one.strips) {
+        const double run = strip.to.x() - strip.from.x();
+        if (one.command == 2 && one.what.empty() && strip.from.x() <= 400 && strip.to.x() > 400) {
+          low = std::min(
+              low, strip.from.z() + (400 - strip.from.x()) / run * (strip.to.z() - strip.from.z()));
+        }
+      }
+    }
+    return low - kHome;
+  };
+  EXPECT_NEAR(low_after(14), 100, 0.5);
+  EXPECT_GT(low_after(20), 114);
+}
+
+TEST(FlownMission, ATooSteepLegOfAPlaneIsNoted) {
+  const FlownMission flown = fly({command(16, 0, 0, 50), command(16, 200, 0, 450)}, kPlane);
+  EXPECT_TRUE(has_rule(flown, "climb_rate"));
+}
+
+TEST(FlownMission, HeightsAfterANewHomeCountFromIt) {
+  const FlownMission flown =
+      fly({command(22, 0, 0, 50), command(16, 100, 0, 50), command(179, 0, 0, 300, 0),
+           command(16, 200, 0, 50), command(16, 300, 0, 50)},
+          kCopter);
+  EXPECT_NEAR(flown.parts.back().strips.back().to.z(), 350, 0.1);
+  EXPECT_TRUE(has_rule(flown, "set_home"));
+}
+
+TEST(FlownMission, JumpsAreFlownAsOftenAsTheySay) {
+  const FlownMission once =
+      fly({command(22, 0, 0, 20), command(16, 500, 0, 20), command(16, 0, 0, 20)}, kCopter);
+  const FlownMission thrice = fly({command(22, 0, 0, 20), command(16, 500, 0, 20),
+                                   command(16, 0, 0, 20), order(177, {2, 2, 0, 0})},
+                                  kCopter);
+  const double both_ways = 2 * 500 / 10.0;
+  EXPECT_GT(thrice.time.min_s - once.time.min_s, 2 * both_ways * 0.9);
+  EXPECT_LT(thrice.time.min_s - once.time.min_s, 2 * both_ways * 1.1);
+  EXPECT_TRUE(std::isinf(
+      fly({command(22, 0, 0, 20), command(16, 500, 0, 20), order(177, {2, -1, 0, 0})}, kCopter)
+          .time.max_s));
+}
+
+TEST(FlownMission, ADelayHoldsACopterAndAConditionDoesNot) {
+  const auto time = [](int number) {
+    return fly({command(22, 0, 0, 20), order(number, {300, 0, 0, 0}), command(16, 600, 0, 20)},
+               kCopter)
+        .time;
+  };
+  EXPECT_GT(time(93).min_s, 300);
+  EXPECT_LT(time(112).max_s, 120);
+}
+
+TEST(FlownMission, NumbersAreCutAsTheAutopilotStoresThem) {
+  MissionCommand circle = command(18, 500, 0, 50.559);
+  circle.params = {2.9, 0, 268, 0};
+  const FlownMission flown = fly({command(22, 0, 0, 50), circle}, kCopter);
+  const FlownPart& round = part(flown, "its circle");
+  EXPECT_NEAR(round.strips.front().from.z(), kHome + 50, 0.56);
+  EXPECT_NEAR(highest(round), kHome + 50.55, 1e-6);
+  double radius = 0;
+  for (const Strip& strip : round.strips) {
+    radius = std::max(radius, (strip.from.head<2>() - Eigen::Vector2d(500, 0)).norm());
+  }
+  EXPECT_NEAR(radius, 260, 1.5);  // whole tens of metres
+}
+
+TEST(FlownMission, WhatAnAutopilotRefusesIsNotFlown) {
+  const auto rule_of = [](const MissionCommand& extra, Autopilot autopilot) {
+    const FlownMission flown =
+        fly({command(22, 0, 0, 20), command(16, 100, 0, 20), extra, command(16, 200, 0, 20)},
+            autopilot);
+    for (const Remark& remark : flown.remarks) {
+      if (remark.command == 2) {
+        return remark.rule;
+      }
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(rule_of(order(201, {0, 0, 0, 0}), kCopter), "none");
+  EXPECT_EQ(rule_of(command(82, 150, 0, 20), kPx4Copter), "refused");
+  EXPECT_EQ(rule_of(command(36, 150, 0, 20), kPlane), "dropped");
+  EXPECT_EQ(rule_of(order(42702, {0, 0, 0, 0}), kCopter), "unforeseeable");
+  EXPECT_EQ(rule_of(command(16, 150, 0, 20, 10), kPx4Copter), "refused");
+  EXPECT_EQ(rule_of(order(99, {0, 0, 0, 0}), kCopter), "refused");
+  MissionCommand stops = command(16, 150, 0, 20);
+  stops.auto_continue = false;
+  EXPECT_EQ(rule_of(stops, kPx4Copter), "never_ends");
+  EXPECT_EQ(rule_of(stops, kCopter), "none");
+}
+}  // namespace
+}  // namespace altiplan::host::flown_mission_test
