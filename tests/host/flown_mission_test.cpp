@@ -25,8 +25,8 @@ constexpr Autopilot kQuadplane{Firmware::ardupilot, Airframe::vtol};
 constexpr Autopilot kPx4Copter{Firmware::px4, Airframe::copter};
 
 const World& flat() {
-  static const World world = World().with_frame(Frame::geographic(kLon, kLat, kLat));
-  return world;
+  static const World kWorld = World().with_frame(Frame::geographic(kLon, kLat, kLat));
+  return kWorld;
 }
 
 /// A command at metres east and north of home.

@@ -18,8 +18,8 @@ constexpr int kStride = 20;
 constexpr int kDirections = 16;
 
 const std::vector<Vec3>& up_and_down() {
-  static const std::vector<Vec3> directions{Vec3(0, 0, 1), Vec3(0, 0, -1)};
-  return directions;
+  static const std::vector<Vec3> kUpAndDown{Vec3(0, 0, 1), Vec3(0, 0, -1)};
+  return kUpAndDown;
 }
 
 std::vector<Vec3> around() {

@@ -15,7 +15,7 @@ constexpr const char* kPx4 = "UUU...";
 /// Sorted by number. ArduPilot: AP_Mission::mavlink_int_to_mission_cmd and start_command of the
 /// vehicles; PX4: parse_mavlink_mission_item, FeasibilityChecker and MissionBlock.
 const std::vector<CommandTask>& table() {
-  static const std::vector<CommandTask> rows{
+  static const std::vector<CommandTask> kRows{
       {0, "complex item", Task::other, "UUUUUU"},
       {16, "waypoint", Task::waypoint, kAll},
       {17, "loiter", Task::loiter_forever, kAll},
@@ -96,7 +96,7 @@ const std::vector<CommandTask>& table() {
       {42702, "script", Task::other, "???UUU"},
       {42703, "attitude", Task::other, "?KKUUU"},
   };
-  return rows;
+  return kRows;
 }
 
 const CommandTask kUnknown{-1, "command", Task::other, "UUUUUU"};
