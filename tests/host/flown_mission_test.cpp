@@ -186,6 +186,18 @@ TEST(FlownMission, JumpsAreFlownAsOftenAsTheySay) {
           .time.max_s));
 }
 
+TEST(FlownMission, WhatTakesForEverIsNotFlown) {
+  const std::vector<MissionCommand> loop{command(16, 0, 0, 100), command(16, 900, 0, 100),
+                                         order(177, {1, 20000, 0, 0}), command(16, 900, 900, 100)};
+  EXPECT_GT(fly(loop, kPlane).time.min_s, 20000 * 100);  // flown a few times, and counted
+  EXPECT_TRUE(
+      has_rule(fly({command(16, 0, 0, 100), command(16, 900'000, 0, 100)}, kPlane), "not_judged"));
+  MissionCommand arc = command(36, 100, 0, 20);
+  arc.params = {360, 0, 0, 0};
+  EXPECT_TRUE(
+      has_rule(fly({command(22, 0, 0, 20), arc, command(16, 200, 0, 20)}, kCopter), "not_judged"));
+}
+
 TEST(FlownMission, ADelayHoldsACopterAndAConditionDoesNot) {
   const auto time = [](int number) {
     return fly({command(22, 0, 0, 20), order(number, {300, 0, 0, 0}), command(16, 600, 0, 20)},

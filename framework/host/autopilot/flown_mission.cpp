@@ -16,6 +16,8 @@ using Weight = Remark::Weight;
 namespace {
 
 constexpr int kMaxSteps = 100'000;
+constexpr std::size_t kFlownAnew = 3;  // times that an aeroplane's leg is flown before it is known
+constexpr double kFarthest = 300'000;  // metres
 }  // namespace
 
 FlownMission Walker::fly() {
@@ -182,12 +184,34 @@ bool Walker::carry_out(std::size_t n) {
     return false;
   }
   begin_in_the_air(n);
-  flight_.repeats = flown_[{flight_.before, n}]++;
+  if (is_too_far(n, destination(n).at)) {
+    return true;
+  }
+  Flown& flown = flown_[{flight_.before, n}];
+  flight_.repeats = flown.times++;
+  if (is_winged_ && flight_.repeats > kFlownAnew) {  // nothing new is seen
+    flight_.take(flown.time);
+    flight_.before = n;
+    return false;
+  }
+  const TimeSpan begun = mission_.time;
   const bool ends = is_winged_ ? fly_wing(n) : fly_hover(n);
+  flown.time = {mission_.time.min_s - begun.min_s, mission_.time.max_s - begun.max_s};
   flight_.before = n;
   former_home_z_.reset();
   is_pending_ = false;
   return ends;
+}
+
+bool Walker::is_too_far(std::size_t n, const Eigen::Vector2d& at) {
+  const double distance = (at - here()).norm();
+  if (distance <= kFarthest) {
+    return false;
+  }
+  flight_.remark(Weight::not_judged, "not_judged", n,
+                 "lies " + std::to_string(std::llround(distance / 1000)) +
+                     " km away: ways of more than 300 km are not judged");
+  return true;
 }
 
 FlownMission fly_mission(const formats::MissionFile& plan, formats::Autopilot autopilot,

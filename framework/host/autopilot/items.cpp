@@ -46,8 +46,15 @@ bool Walker::fly_hover(std::size_t n) {
                    "the curve of a spline is not judged: replace it by waypoints");
   }
   if (task == Task::arc && std::abs(command.params[0]) >= 1 && !to.above_ground) {
-    hover_->arc(n, to, radians(command.params[0]));
-    return false;
+    constexpr double kMaxRadius = 100'000;
+    const double angle = radians(command.params[0]);
+    const double radius = (to.at - hover_->at).norm() / (2 * std::sin(std::abs(angle) / 2));
+    if (std::abs(angle) < 2 * kPi && radius > 0 && radius <= kMaxRadius) {
+      hover_->arc(n, to, angle);
+      return false;
+    }
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "an arc of a full turn or more, or of more than 100 km radius, is not judged");
   }
   if (task == Task::loiter_to_altitude && is_px4()) {
     Destination level = to;

@@ -41,6 +41,9 @@ void Walker::return_home(std::size_t n) {
                    "where home is, to which it returns, the file does not say");
     return;
   }
+  if (is_too_far(n, home_)) {
+    return;
+  }
   const std::optional<Hover> hover = hover_;
   const std::optional<Wing> wing = wing_;
   const bool is_winged = is_winged_;

@@ -55,6 +55,9 @@ class Walker {
 
   void note_unflown(std::size_t n);
 
+  /// Reports a place that is farther away than is judged.
+  bool is_too_far(std::size_t n, const Eigen::Vector2d& at);
+
   /// True if the flight ends here.
   bool carry_out(std::size_t n);
 
@@ -140,6 +143,11 @@ class Walker {
   bool is_pending_ = false;  ///< a condition delays what follows
   double hover_speed_[2] = {0, 0};
   double wing_speed_[2] = {0, 0};
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> flown_;
+  /// A way between two commands: how often it was flown, and how long it took at last.
+  struct Flown {
+    std::size_t times = 0;
+    TimeSpan time;
+  };
+  std::map<std::pair<std::size_t, std::size_t>, Flown> flown_;
 };
 }  // namespace altiplan::host
