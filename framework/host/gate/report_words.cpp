@@ -64,7 +64,7 @@ void expect_route(const std::string& file, const formats::MissionFile& plan) {
                      ? !plan.zones.empty()   ? ": it contains only zones"
                        : !plan.rally.empty() ? ": it contains only rally points"
                                              : ""
-                     : ", and where " + plan.moves.front().place + " flies is not judged"));
+                     : ", and where " + plan.moves.front() + " flies is not judged"));
   }
 }
 }  // namespace altiplan::host

@@ -9,6 +9,7 @@ namespace altiplan::formats {
 namespace {
 
 constexpr const char* kAll = "......";
+constexpr const char* kNobody = "UUUUUU";
 constexpr const char* kArduPilot = "...UUU";
 constexpr const char* kPx4 = "UUU...";
 
@@ -16,7 +17,7 @@ constexpr const char* kPx4 = "UUU...";
 /// vehicles; PX4: parse_mavlink_mission_item, FeasibilityChecker and MissionBlock.
 const std::vector<CommandTask>& table() {
   static const std::vector<CommandTask> kRows{
-      {0, "complex item", Task::other, "UUUUUU"},
+      {0, "complex item", Task::other, kNobody},
       {16, "waypoint", Task::waypoint, kAll},
       {17, "loiter", Task::loiter_forever, kAll},
       {18, "loiter", Task::loiter_turns, kArduPilot},
@@ -24,10 +25,18 @@ const std::vector<CommandTask>& table() {
       {20, "return to launch", Task::return_home, kAll},
       {21, "landing", Task::land, kAll},
       {22, "take-off", Task::take_off, kAll},
+      {23, "local landing", Task::other, kNobody},
+      {24, "local take-off", Task::other, kNobody},
+      {25, "follow", Task::other, kNobody},
       {30, "continue and change altitude", Task::change_altitude, "K..UUU"},
       {31, "loiter", Task::loiter_to_altitude, kAll},
+      {32, "follow", Task::other, kNobody},
+      {33, "follow", Task::other, kNobody},
+      {34, "orbit", Task::other, kNobody},
+      {35, "figure eight", Task::other, kNobody},
       {36, "arc waypoint", Task::arc, ".KKUUU"},
       {80, "region of interest", Task::payload, kAll},
+      {81, "path planning", Task::other, kNobody},
       {82, "spline", Task::spline, ".UUUUU"},
       {83, "altitude wait", Task::other, "K??UUU"},
       {84, "VTOL take-off", Task::vtol_take_off, ".K.XX."},
@@ -38,6 +47,7 @@ const std::vector<CommandTask>& table() {
       {112, "condition delay", Task::condition, "...XXX"},
       {114, "condition distance", Task::condition, "...XXX"},
       {115, "condition yaw", Task::payload, ".KKUUU"},
+      {176, "mode", Task::other, kNobody},
       {177, "jump", Task::jump, kAll},
       {178, "speed", Task::speed, kAll},
       {179, "set home", Task::set_home, kAll},
@@ -49,6 +59,7 @@ const std::vector<CommandTask>& table() {
       {188, "return path start", Task::payload, kArduPilot},
       {189, "landing start", Task::landing_start, kAll},
       {191, "go around", Task::payload, "K..UUU"},
+      {192, "reposition", Task::other, kNobody},
       {193, "pause", Task::payload, "KKKUUU"},
       {194, "reverse", Task::payload, "KKKUUU"},
       {195, "region of interest", Task::payload, kAll},
@@ -99,7 +110,7 @@ const std::vector<CommandTask>& table() {
   return kRows;
 }
 
-const CommandTask kUnknown{-1, "command", Task::other, "UUUUUU"};
+const CommandTask kUnknown{-1, "command", Task::other, kNobody};
 }  // namespace
 
 std::string Autopilot::name() const {

@@ -54,7 +54,6 @@ std::optional<MissionItem::Kind> kind_of(Task task) {
 /// True for a command that flies the vehicle somewhere, but to no position of its own.
 bool moves_vehicle(int command) {
   const CommandTask& row = command_task(command);
-  constexpr std::array kPositions{23, 24, 25, 32, 33, 34, 35, 81, 176, 192};
   switch (row.task) {
     case Task::return_home:
     case Task::change_altitude:
@@ -63,9 +62,8 @@ bool moves_vehicle(int command) {
     case Task::jump:
     case Task::jump_to_tag:
       return true;
-    case Task::other:  // known to no autopilot, or decided by another program
-      return row.number > 0 ||
-             std::find(kPositions.begin(), kPositions.end(), command) != kPositions.end();
+    case Task::other:  // flown by no autopilot, or decided by another program
+      return row.number > 0;
     default:
       return false;
   }
@@ -184,8 +182,7 @@ void CommandList::add(const MissionCommand& command) {
   const auto kind = kind_of(task);
   if (!kind) {
     if (moves_vehicle(command.number)) {
-      mission_.moves.push_back(
-          {command.number, command.place, command.item, mission_.items.size()});
+      mission_.moves.push_back(command.place);
       ++moves_;
       moves_numbers_.insert(command.number);
     } else {
@@ -208,7 +205,7 @@ void CommandList::add(const MissionCommand& command) {
   item.number = command.item;
   mission_.items.push_back(std::move(item));
   if (command.number == kSpline) {
-    mission_.moves.push_back({kSpline, command.place, command.item, mission_.items.size()});
+    mission_.moves.push_back(command.place);
   }
 }
 
@@ -216,7 +213,7 @@ void CommandList::skip_complex(const std::string& place) {
   ++complex_;
   mission_.commands.push_back({});
   mission_.commands.back().place = place;
-  mission_.moves.push_back({0, place, 0, mission_.items.size()});
+  mission_.moves.push_back(place);
 }
 
 void CommandList::finish() {

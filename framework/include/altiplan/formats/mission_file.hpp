@@ -46,15 +46,6 @@ struct MissionItem {
   int number = 0;        ///< as ground stations show it; 0: the format numbers nothing
 };
 
-/// A command that moves the vehicle otherwise than to a position: a return, a jump, a scan.
-struct MissionMove {
-  static constexpr int kReturn = 20;
-  int command = 0;  ///< MAV_CMD; 0: a complex item of the ground station
-  std::string place;
-  int number = 0;
-  std::size_t after = 0;  ///< how many items come before it
-};
-
 struct MissionFile {
   enum class Format { qgc_plan, waypoints, kml, gpx, geojson };
   Format format = Format::qgc_plan;
@@ -65,8 +56,9 @@ struct MissionFile {
   double cruise_mps = 0;                 ///< of an aeroplane, as the file has it
   std::vector<MissionCommand> commands;  ///< all items, of `.plan` and `.waypoints`
   std::vector<MissionItem> items;
-  std::vector<MissionMove> moves;  ///< not part of the items
-  std::string route_problem;       ///< why the items are not a route, "" where they are
+  /// Places of the commands that fly otherwise than to a position: a return, a jump, a scan.
+  std::vector<std::string> moves;
+  std::string route_problem;  ///< why the items are not a route, "" where they are
   std::vector<Zone> zones;
   /// Where the vehicle may return to instead of home: of a .plan, and of QGC WPL 110 (MAV_CMD
   /// 5100).
