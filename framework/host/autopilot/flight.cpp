@@ -71,7 +71,7 @@ void Flight::add_column(const Eigen::Vector2d& at, double low, double high, doub
   add_strip(foot, high, foot, high, reach);
 }
 
-void Flight::add_disc(const Eigen::Vector2d& centre, double inner, double outer, double low,
+void Flight::add_disc(const Destination& centre, double inner, double outer, double low,
                       double high) {
   const int rings = std::max(1, int(std::ceil((outer - inner) / kSpacing)));
   for (int ring = 0; ring <= rings; ++ring) {
@@ -82,9 +82,13 @@ void Flight::add_disc(const Eigen::Vector2d& centre, double inner, double outer,
         // The chords' corners lie outside, so that the chords reach the circle.
         const double r = radius / std::cos(kPi / sides);
         const double angle = 2 * kPi * n / sides;
-        return Vec3(centre.x() + r * std::cos(angle), centre.y() + r * std::sin(angle), low);
+        const Eigen::Vector2d p = centre.at + r * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        return Vec3(p.x(), p.y(), centre.above_ground ? ground(p) + *centre.above_ground : low);
       };
-      add_strip(corner(side), high, corner(side + 1), high, kSpacing / 2);
+      const Vec3 from = corner(side);
+      const Vec3 to = corner(side + 1);
+      const double rise = centre.above_ground ? 0 : high - low;
+      add_strip(from, from.z() + rise, to, to.z() + rise, kSpacing / 2);
     }
   }
 }

@@ -47,7 +47,8 @@ class Flight {
   /// Adds a vertical motion.
   void add_column(const Eigen::Vector2d& at, double low, double high, double reach);
   /// Adds a whole disc at heights from `low` to `high`, as circles that lie close.
-  void add_disc(const Eigen::Vector2d& centre, double inner, double outer, double low, double high);
+  /// or, where a height above the ground is given, at that.
+  void add_disc(const Destination& centre, double inner, double outer, double low, double high);
 
   double home_ground = 0;   ///< where the world has no ground
   std::size_t before = 0;   ///< the command whose position was flown to last
@@ -152,7 +153,11 @@ class Wing {
   /// Seconds that the member takes.
   double fly(Member& member, const Leg& leg);
   double sought_height(const Leg& leg, const Eigen::Vector2d& at, double share) const;
-  void seek_heights(Member& member, double sought, double seconds) const;
+  /// ArduPilot climbs at half its rate before the ground rises.
+  double highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
+                       double left, double v) const;
+  /// Of a height that is sought slowly, and of the highest that may be.
+  void seek_heights(Member& member, double sought, double highest, double seconds) const;
   void circle_until_high(std::size_t command, const Leg& leg);
   double max_turn_rate(double v) const;
 
@@ -160,6 +165,7 @@ class Wing {
   std::vector<Member> members_;
   Destination from_;  ///< the previous item, from which the track leads
   bool has_track_ = false;
+  bool does_arrive_ = true;
   std::optional<Destination> before_;  ///< the item before that, if its track leads there
   double cut_m_ = 0;                   ///< how far before the previous item it may have turned
   double climb_mps_;

@@ -189,7 +189,7 @@ void Hover::circle(std::size_t command, const Destination& centre, double radius
   flight_.begin(command, "its circle");
   const double bottom = std::min(low, centre.low);
   const double top = std::max(high, centre.high);
-  flight_.add_disc(centre.at, is_from_centre ? 0 : radius, radius, bottom, top);
+  flight_.add_disc(centre, is_from_centre ? 0 : radius, radius, bottom, top);
   const double v = std::min({speed_mps[0], std::sqrt(0.5 * 2.5 * radius), radians(20) * radius});
   const double seconds = 2 * kPi * radius * turns / v;
   flight_.take({0.9 * seconds, 1.1 * seconds + 15});

@@ -45,16 +45,18 @@ bool Walker::fly_hover(std::size_t n) {
     flight_.remark(Weight::not_judged, "not_judged", n,
                    "the curve of a spline is not judged: replace it by waypoints");
   }
-  if (task == Task::arc && std::abs(command.params[0]) >= 1 && !to.above_ground) {
+  if (task == Task::arc && std::abs(command.params[0]) >= 1) {
     constexpr double kMaxRadius = 100'000;
     const double angle = radians(command.params[0]);
     const double radius = (to.at - hover_->at).norm() / (2 * std::sin(std::abs(angle) / 2));
-    if (std::abs(angle) < 2 * kPi && radius > 0 && radius <= kMaxRadius) {
+    if (!to.above_ground && std::abs(angle) < 2 * kPi && radius > 0 && radius <= kMaxRadius) {
       hover_->arc(n, to, angle);
       return false;
     }
-    flight_.remark(Weight::not_judged, "not_judged", n,
-                   "an arc of a full turn or more, or of more than 100 km radius, is not judged");
+    flight_.remark(
+        Weight::not_judged, "not_judged", n,
+        "an arc above the ground, of a full turn or more, or of more than 100 km radius, "
+        "is not judged");
   }
   if (task == Task::loiter_to_altitude && is_px4()) {
     Destination level = to;
@@ -68,7 +70,8 @@ bool Walker::fly_hover(std::size_t n) {
   const double hold = task == Task::waypoint || task == Task::loiter_time || task == Task::spline
                           ? command.params[0]
                           : 0;
-  hover_->acceptance_m = std::isfinite(command.params[1]) ? command.params[1] : 0;
+  hover_->acceptance_m =
+      task == Task::waypoint && std::isfinite(command.params[1]) ? command.params[1] : 0;
   hover_->stops = hold > 0 || task != Task::waypoint;
   if (hold > 0) {
     flight_.take({hold, hold});

@@ -33,11 +33,6 @@ void Walker::set_home(std::size_t n) {
   const MissionCommand& command = commands_[n];
   const bool is_here =
       command.params[0] == 1 || (!command.has_position() && command.altitude_m == 0);
-  if (is_px4() && !is_here) {
-    flight_.remark(Weight::fails, "set_home", n,
-                   autopilot_.name() + " sets a wrong home where this gives a place");
-    return;
-  }
   former_home_z_ = home_z_;
   if (is_here) {
     home_ = here();

@@ -32,18 +32,14 @@ const Row kRows[] = {
     {"WP_SPD", {10, kNone, kNone, kNone}, "WPNAV_SPEED", kCm},
     {"WP_SPD_UP", {2.5, kNone, kNone, kNone}, "WPNAV_SPEED_UP", kCm},
     {"WP_SPD_DN", {1.5, kNone, kNone, kNone}, "WPNAV_SPEED_DN", kCm},
-    {"WP_ACC", {2.5, kNone, kNone, kNone}, "WPNAV_ACCEL", kCm},
     {"RTL_ALT_M", {15, kNone, kNone, kNone}, "RTL_ALT", kCm},
     {"RTL_CLIMB_MIN_M", {0, kNone, kNone, kNone}, "RTL_CLIMB_MIN", kCm},
     {"RTL_CONE_SLOPE", {3, kNone, kNone, kNone}},
-    {"RTL_LOIT_TIME", {5000, kNone, kNone, kNone}},
     {"RTL_ALT_TYPE", {0, kNone, kNone, kNone}},
     {"LAND_SPD_MS", {0.5, kNone, kNone, kNone}, "LAND_SPEED", kCm},
-    {"LAND_ALT_LOW_M", {10, kNone, kNone, kNone}, "LAND_ALT_LOW", kCm},
     {"RALLY_LIMIT_KM", {0.3, 5, kNone, kNone}},
     {"RALLY_INCL_HOME", {1, 0, kNone, kNone}},
     {"FENCE_ENABLE", {0, 0, kNone, kNone}},
-    {"FENCE_OPTIONS", {0, 0, kNone, kNone}},
     {"WP_RADIUS", {kNone, 90, kNone, kNone}},
     {"WP_LOITER_RAD", {kNone, 60, kNone, kNone}},
     {"NAVL1_PERIOD", {kNone, 17, kNone, kNone}},
@@ -84,7 +80,6 @@ const Row kRows[] = {
     {"FW_T_SINK_R_SP", {kNone, kNone, kNone, 2}},
     {"FW_T_CLMB_MAX", {kNone, kNone, kNone, 5}},
     {"FW_R_LIM", {kNone, kNone, kNone, 50}},
-    {"VT_TRANS_TIMEOUT", {kNone, kNone, kNone, 15}},
 };
 
 const Row& row_of(const std::string& name) {

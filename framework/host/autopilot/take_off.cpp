@@ -69,12 +69,12 @@ bool Walker::take_off(std::size_t n) {
     if (autopilot_.is_copter()) {
       hover_->go(n, "the way from home", there);
     } else {
-      begin_to_wing(n, there.at);
+      begin_to_wing(there.at);
       fly_wing_to(n, "the way from home", there, true);
     }
   } else if (!autopilot_.is_copter()) {
     const auto next = next_destination(n);
-    begin_to_wing(n, next ? next->at : home_ + Eigen::Vector2d(1, 0));
+    begin_to_wing(next ? next->at : home_ + Eigen::Vector2d(1, 0));
   }
   flight_.before = n;
   return false;
@@ -123,25 +123,18 @@ bool Walker::take_off_along_runway(std::size_t n) {
   return false;
 }
 
-void Walker::begin_to_wing(std::size_t, const Eigen::Vector2d& toward) {
+void Walker::begin_to_wing(const Eigen::Vector2d& toward) {
   wing_.emplace(flight_);
   set_wing_speed();
   is_winged_ = true;
-  const double z = hover_->low;
-  if (is_px4()) {  // straight ahead until it flies
-    const Eigen::Vector2d way = toward - hover_->at;
-    const double run = std::min(way.norm(), parameter("VT_TRANS_TIMEOUT") * wing_->speed_mps[1]);
-    wing_->start(hover_->at, z, hover_->at + (run > 0 ? way : Eigen::Vector2d(1, 0)));
-    return;
-  }
-  wing_->start(hover_->at, z, toward);
+  wing_->start(hover_->at, hover_->low, toward);  // it turns on the spot, then flies ahead
 }
 
 bool Walker::transition(std::size_t n) {
   constexpr double kToWing = 4;
   if (commands_[n].params[0] == kToWing && hover_ && !is_winged_) {
     const auto next = next_destination(n);
-    begin_to_wing(n, next ? next->at : hover_->at + Eigen::Vector2d(1, 0));
+    begin_to_wing(next ? next->at : hover_->at + Eigen::Vector2d(1, 0));
   } else if (commands_[n].params[0] != kToWing && is_winged_) {
     flight_.remark(Weight::not_judged, "not_judged", n,
                    "where the vehicle stops when it changes to hover is not judged");

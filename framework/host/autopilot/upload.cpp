@@ -150,6 +150,9 @@ class UploadCheck {
       return refuse("never_ends", "stops here for ever (autoContinue is false)");
     }
     const Task task = commands_.task_of(n).task;
+    if (is_px4() && task == Task::set_home && command.params[0] != 1) {
+      return refuse("set_home", "sets a wrong home where a command gives its place");
+    }
     if (task == Task::jump && !commands_.target_of(n)) {
       return refuse("refused", "finds no item to jump to");
     }

@@ -71,7 +71,7 @@ class Walker {
 
   bool take_off_along_runway(std::size_t n);
 
-  void begin_to_wing(std::size_t, const Eigen::Vector2d& toward);
+  void begin_to_wing(const Eigen::Vector2d& toward);
 
   bool transition(std::size_t n);
 

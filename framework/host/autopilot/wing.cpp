@@ -142,10 +142,23 @@ double Wing::sought_height(const Leg& leg, const Eigen::Vector2d& at, double sha
              : from_.low + share * rise;
 }
 
-void Wing::seek_heights(Member& member, double sought, double seconds) const {
+double Wing::highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
+                           double left, double v) const {
+  constexpr double kLook = 100;  // metres
+  const double slope = climb_mps_ / 2 / v;
+  const double far = std::min(left, flight_.parameter("TERRAIN_LOOKAHD"));
+  double highest = -kInfinity;
+  for (double ahead = kLook; ahead <= far; ahead += kLook) {
+    highest = std::max(highest, flight_.ground(at + ahead * track) - ahead * slope);
+  }
+  const double before = from_.above_ground.value_or(*leg.to.above_ground);
+  return highest + std::max(before, *leg.to.above_ground);
+}
+
+void Wing::seek_heights(Member& member, double sought, double highest, double seconds) const {
   const double lag = flight_.autopilot().is_px4() ? 1 : flight_.parameter("TECS_HDEM_TCONST");
   const double slow = std::clamp((sought - member.low) / lag, -sink_mps_, climb_mps_);
-  const double fast = std::clamp((sought - member.high) / lag, -sink_mps_, climb_mps_);
+  const double fast = std::clamp((highest - member.high) / lag, -sink_mps_, climb_mps_);
   member.low += slow * seconds;
   member.high += fast * seconds;
 }
@@ -168,7 +181,11 @@ double Wing::fly(Member& member, const Leg& leg) {
   double seconds = 0;
   double undrawn = 0;
   bool was_on_line = false;
-  for (int step = 0; step < max_steps; ++step) {
+  for (int step = 0;; ++step) {
+    if (step == max_steps) {
+      does_arrive_ = false;
+      break;
+    }
     const Eigen::Vector2d off = member.at - begin;
     const double done = off.dot(track);
     if ((leg.to.at - member.at).norm() <= distance || done >= finish) {
@@ -192,7 +209,10 @@ double Wing::fly(Member& member, const Leg& leg) {
     const double sought = sought_height(leg, member.at, share);
     const double old_low = member.low;
     const double old_high = member.high;
-    seek_heights(member, sought, dt);
+    const double highest =
+        is_rough ? std::max(sought, highest_ahead(leg, member.at, track, finish - done, v))
+                 : sought;
+    seek_heights(member, sought, highest, dt);
     const bool is_level =
         std::abs(member.low - old_low) < 1e-3 && std::abs(member.high - old_high) < 1e-3;
     const bool bends = std::abs(member.heading - drawn_heading) > 0.05;
@@ -200,7 +220,7 @@ double Wing::fly(Member& member, const Leg& leg) {
       const double line =
           leg.at_once || is_rough ? sought : from_.low + share * (leg.to.low - from_.low);
       const Vec3 here(member.at.x(), member.at.y(), std::min({member.low, sought, line}));
-      const double here_high = std::max({member.high, sought, line});
+      const double here_high = std::max({member.high, highest, line});
       const double nominal = from_.low + share * (leg.to.low - from_.low);
       const bool is_on_line = has_track_ && !is_rough &&
                               std::abs(cross(track, member.at - begin)) < kOnTrack &&
@@ -276,6 +296,10 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
     time.max_s = std::max(time.max_s, 1.05 * seconds + 2);
   }
   flight_.take(time);
+  if (!does_arrive_) {
+    flight_.remark(Remark::Weight::not_judged, "not_judged", command,
+                   "how the aeroplane gets here is not judged: it circles the item");
+  }
   const double length = (leg.to.at - from_.at).norm();
   const double rise = leg.to.low - from_.low;
   const double limit = rise > 0 ? climb_mps_ : sink_mps_;
@@ -309,7 +333,7 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
   const double widest = std::max(radius, speed_mps[1] / max_turn_rate(speed_mps[1])) * 1.1;
   // A small circle is joined from within; a large one along a tangent, or beyond it.
   const double inner = radius < 150 ? 0 : 0.75 * radius;
-  flight_.add_disc(centre.at, inner, widest, bottom, top);
+  flight_.add_disc(centre, inner, widest, bottom, top);
   const double round = 2 * kPi * radius;
   const double climb =
       std::max(std::abs(bottom - z), std::abs(top - z)) / std::min(climb_mps_, sink_mps_);
