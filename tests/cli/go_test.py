@@ -59,7 +59,8 @@ class Go(unittest.TestCase):
         """A route that the judge accepts, that its files give again, and whose plan passes."""
         out, _ = self.call("go", *options)
         self.assertEqual([line.split(":")[0] for line in out.splitlines()],
-                         ["terrain", "volume", "heights", "planner", "route", "written"])
+                         ["terrain", "volume", "heights", "planner", "route", "written", "check"])
+        self.assertIn("check: pass", out)
         self.assertEqual(sorted(file.name for file in (self.folder / folder).iterdir()),
                          ["page.html", "pipeline.yaml", "result.json", "route.plan",
                           "scenario.yaml"])
@@ -89,9 +90,14 @@ class Go(unittest.TestCase):
         out = self.go("--terrain", TERRAIN, *ENDS, "--wing", "80", "--via", "-84.30,36.58,150",
                       "-o", "wing", folder="wing")
         self.assertIn("wing with turns of 80 m", out)
-        # ArduPilot's aeroplane cuts the corners of the points, and at their end goes home through the ridges.
-        out, _ = self.call("check", "wing/route.plan", "--terrain", TERRAIN, "--min-agl", "50", code=1)
-        self.assertIn("the way home: the height above ground is", out)
+        self.assertIn("check: pass, flown by ArduPilot plane, ", out)
+        self.call("check", "wing/route.plan", "--terrain", TERRAIN, "--min-agl", "50")
+
+    def test_a_wing_whose_circle_at_the_goal_is_too_low(self):
+        out, _ = self.call("go", "--terrain", TERRAIN, "--from", "-84.35,36.50", "--to", "-84.15,36.65",
+                           "--wing", "80", "-o", "low_circle", code=1)
+        self.assertIn("check: fail, flown by ArduPilot plane", out)
+        self.assertIn("its circle: the height above ground is", out)
 
     def zones(self, file, *rings, **properties):
         (self.folder / file).write_text(json.dumps({

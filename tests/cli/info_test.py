@@ -2,6 +2,7 @@
 """info_test.py PROGRAM SOURCES: `altiplan info`, what a file holds."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -119,6 +120,16 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
         for said in ("m.waypoints: mission", "1 item: 1 waypoints", "50 to 50 m above home",
                      'mission: "m.waypoints"'):
             self.assertIn(said, out)
+
+    def test_how_a_mission_is_flown(self):
+        lines = ["0\t1\t0\t16\t0\t0\t0\t0\t46\t8\t400\t1", "1\t0\t3\t22\t0\t0\t0\t0\t46\t8\t50\t1",
+                 "2\t0\t3\t16\t0\t0\t0\t0\t46.1\t8\t80\t1", "3\t0\t3\t18\t1\t0\t50\t0\t46.1\t8\t80\t1"]
+        out = self.info(self.write("m.waypoints", "\n".join(["QGC WPL 110", *lines, ""])))
+        self.assertRegex(out, r"length 11\.1\d\d km")  # 0.1 degrees of latitude
+        # 11.1 km at 10 m/s, and the take-off.
+        minutes = re.search(r"flown by ArduPilot copter: ([\d.]+) to ([\d.]+) min, \d+ to 80 m above home", out)
+        self.assertTrue(18.2 < float(minutes[1]) < float(minutes[2]) < 24, out)
+        self.assertIn("item 3 (loiter) PX4 copter refuses", out)
 
     def test_files_of_other_kinds(self):
         out = self.info("none.tif", self.write("word.dat", "word"), TERRAIN, code=3)

@@ -9,6 +9,8 @@
 #include "host/base/output_file.hpp"
 #include "host/base/unfinished.hpp"
 #include "host/first_route/first_route.hpp"
+#include "host/gate/plan_report.hpp"
+#include "host/mission/mission.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
 #include "progress.hpp"
@@ -139,13 +141,32 @@ void print(const host::RunResult& result) {
       duration(seconds).c_str());
 }
 
+/// True if the mission passes as autopilots fly it; prints the verdict.
+bool passes(const std::string& file, const host::FirstRoute& first,
+            const host::Overrides& overrides) {
+  host::Config config =
+      host::load_scenario_text(first.flown_scenario(), "the world of go", overrides);
+  config.is_only_judged = true;
+  const host::PlanReport report = busy("judging the mission", [&] {
+    return host::judge_plan(file, formats::read_mission(file), host::build_mission(config, 1), {});
+  });
+  std::printf("check: %s, flown by %s, %s\n", word_of(report.verdict()),
+              report.autopilots.front().name().c_str(), time_in_words(report.time).c_str());
+  for (const host::Finding& finding : report.findings) {
+    std::printf("  %s: %s\n", finding.items.back().c_str(), finding.violation.message.c_str());
+  }
+  return report.passed();
+}
+
 /// The page, and the mission; false if the route would not be valid as a mission.
 bool write_views(const fs::path& folder, const GoArguments& arguments) {
   RouteExport route;
   route.result = folder / "result.json";
   route.overrides = arguments.overrides;
   route.options.format = formats::MissionFile::Format::qgc_plan;
-  route.options.takeoff = route.options.land = !arguments.wish.turn_radius_m;
+  const bool is_wing = arguments.wish.turn_radius_m.has_value();
+  route.options.takeoff = route.options.land = !is_wing;
+  route.options.circles_at_end = is_wing;
   finish_options(route);
   const host::Scene scene = busy("drawing the page", [&] {
     return host::build_scene({host::read_result(route.result, arguments.overrides)});
@@ -211,7 +232,7 @@ int go(const GoArguments& arguments) {
   }
   const bool is_mission = write_views(folder, arguments);
   unfinished->is_finished();
-  return is_mission ? kDone : kNoRoute;
+  return is_mission && passes(folder / "route.plan", first, arguments.overrides) ? kDone : kNoRoute;
 }
 
 void add_points(App& command, GoArguments& arguments) {

@@ -2,9 +2,11 @@
 #include <cstdio>
 #include <iostream>
 
+#include "altiplan/formats/input_file.hpp"
 #include "commands.hpp"
 #include "host/base/utf8.hpp"
 #include "host/first_route/file_info.hpp"
+#include "host/gate/plan_report.hpp"
 #include "host/result/result_json.hpp"
 
 namespace altiplan::cli {
@@ -16,6 +18,18 @@ struct InfoArguments {
   bool json = false;
   host::Overrides overrides;
 };
+
+/// What the file holds and, of a mission, how it is flown.
+host::FileInfo facts_of(const std::string& file, const InfoArguments& arguments,
+                        host::Registry& registry) {
+  host::FileInfo info = host::info_of(file, arguments.crs, registry);
+  if (info.kind == "mission") {
+    const std::vector<std::string> flown =
+        host::flight_facts(formats::read_mission(file, formats::read_file(file)), {});
+    info.facts.insert(info.facts.end(), flown.begin(), flown.end());
+  }
+  return info;
+}
 
 void print(const std::string& file, const host::FileInfo& info) {
   std::printf("%s: %s\n", host::printable(file).c_str(), info.kind.c_str());
@@ -36,7 +50,7 @@ int info_of(const InfoArguments& arguments) {
   host::Json all = host::Json::array();
   for (const std::string& file : arguments.files) {
     try {
-      const host::FileInfo info = host::info_of(file, arguments.crs, registry);
+      const host::FileInfo info = facts_of(file, arguments, registry);
       if (arguments.json) {
         all.push_back({{"file", host::printable(file)},
                        {"kind", info.kind},

@@ -46,9 +46,10 @@ std::string point_text(const char* key, const formats::MissionItem& item) {
 
 /// Seconds for which zones with hours are looked at.
 double horizon_s(const PlanCheck& plan, const formats::MissionFile& mission) {
-  return std::min(
-      plan.flown_s ? *plan.flown_s : kMargin * host::estimated_time(mission, plan.gate).max_s,
-      kLongest);
+  return std::min(plan.flown_s
+                      ? *plan.flown_s
+                      : kMargin * time_of(host::estimated_flights(mission, plan.gate)).max_s,
+                  kLongest);
 }
 
 /// The scenario that the options describe.

@@ -26,7 +26,7 @@ class Flight {
   Flight(FlownMission& mission, const World& world, const Parameters& parameters)
       : mission_(mission), world_(world), parameters_(parameters) {}
 
-  double parameter(const std::string& name) const { return parameters_(name); }
+  double parameter(std::string_view name) const { return parameters_(name); }
   formats::Autopilot autopilot() const { return parameters_.autopilot(); }
   const World& world() const { return world_; }
 

@@ -117,7 +117,7 @@ void Walker::walk() {
       const std::optional<std::size_t> next = commands_.after_jump(n);
       if (!next) {
         flight_.remark(Weight::note, "never_ends", n, "jumps back for ever: the flight has no end");
-        flight_.take({kInfinity, kInfinity});
+        flight_.take({0, kInfinity});
         return;
       }
       n = *next;

@@ -77,7 +77,7 @@ bool Walker::fly_hover(std::size_t n) {
     flight_.take({hold, hold});
   }
   if (task == Task::loiter_forever) {
-    flight_.take({kInfinity, kInfinity});
+    flight_.take({0, kInfinity});
     return true;
   }
   return false;
@@ -161,7 +161,7 @@ bool Walker::circle_wing(std::size_t n, const Destination& to) {
   wing_->circle(n, "its circle", to, radius, clockwise, turns, seconds, leg.next,
                 command.params[3] == 1);
   if (task == Task::loiter_forever) {
-    flight_.take({kInfinity, kInfinity});
+    flight_.take({0, kInfinity});
     return true;
   }
   return false;

@@ -82,13 +82,13 @@ const Row kRows[] = {
     {"FW_R_LIM", {kNone, kNone, kNone, 50}},
 };
 
-const Row& row_of(const std::string& name) {
+const Row& row_of(std::string_view name) {
   for (const Row& row : kRows) {
     if (row.name == name) {
       return row;
     }
   }
-  throw std::logic_error("no such parameter: " + name);
+  throw std::logic_error("no such parameter: " + std::string(name));
 }
 
 std::optional<double> value_in(const ParameterFile& file, const Row& row) {
@@ -147,16 +147,19 @@ ParameterFile read_parameters(const std::string& file) {
   return values;
 }
 
-double Parameters::operator()(const std::string& name) const {
+double Parameters::operator()(std::string_view name) const {
+  if (const auto known = used_.find(name); known != used_.end()) {
+    return known->second.value;
+  }
   const Row& row = row_of(name);
   const std::size_t column = (autopilot_.is_px4() ? 2 : 0) + (autopilot_.is_copter() ? 0 : 1);
   const std::optional<double> given = value_in(file_, row);
   const double value = given.value_or(row.defaults[column]);
-  used_.insert_or_assign(name, Used{name, value, given.has_value()});
+  used_.emplace(name, Used{std::string(name), value, given.has_value()});
   return value;
 }
 
-bool Parameters::is_given(const std::string& name) const {
+bool Parameters::is_given(std::string_view name) const {
   return value_in(file_, row_of(name)).has_value();
 }
 

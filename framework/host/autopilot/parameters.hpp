@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "altiplan/formats/mission_commands.hpp"
@@ -24,8 +25,8 @@ class Parameters {
       : autopilot_(autopilot), file_(file) {}
 
   /// By its newest name, in metres, seconds and degrees; a file may have an older name and unit.
-  double operator()(const std::string& name) const;
-  bool is_given(const std::string& name) const;
+  double operator()(std::string_view name) const;
+  bool is_given(std::string_view name) const;
 
   struct Used {
     std::string name;
@@ -39,6 +40,6 @@ class Parameters {
  private:
   formats::Autopilot autopilot_;
   const ParameterFile& file_;
-  mutable std::map<std::string, Used> used_;
+  mutable std::map<std::string, Used, std::less<>> used_;
 };
 }  // namespace altiplan::host

@@ -25,7 +25,7 @@ void Walker::finish() {
     there.high = wing_->high();
     wing_->circle(last, "the circle at the end", there, parameter("NAV_LOITER_RAD"), true, 0, 0, {},
                   false);
-    flight_.take({kInfinity, kInfinity});
+    flight_.take({0, kInfinity});
   } else if (is_winged_) {
     return_home(last);
   }
@@ -165,7 +165,7 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
     circle.low = circle.high = home_z_ + parameter("RTL_DESCEND_ALT");
   }
   wing_->circle(n, "the circle at home", circle, radius, own >= 0, 0, 0, {}, false);
-  flight_.take({kInfinity, kInfinity});
+  flight_.take({0, kInfinity});
   flight_.remark(Weight::note, "end", n, "it circles at home for ever: it does not land");
 }
 }  // namespace altiplan::host

@@ -138,14 +138,13 @@ double FirstRoute::flown_margin() const {
   return std::max(margin, 0.0);
 }
 
-std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) const {
+std::string FirstRoute::world(const std::string& environment, const Box& volume) const {
   const auto corner = [](const Vec3& p) {
     return "[" + text_of(p.x()) + ", " + text_of(p.y()) + ", " + text_of(p.z()) + "]";
   };
   std::string text = "# The world of a first route, written by altiplan go.\naltiplan: 1\nname: " +
-                     exact_json_text(wish_.terrain.front().stem().string()) + "\n" +
-                     environment(volume, folder) + corridor_.frame_line() +
-                     (corridor_.frame_line().empty() ? "" : "\n");
+                     exact_json_text(wish_.terrain.front().stem().string()) + "\n" + environment +
+                     corridor_.frame_line() + (corridor_.frame_line().empty() ? "" : "\n");
   text += "volume: {min_m: " + corner(volume.min) + ", max_m: " + corner(volume.max) + "}\n" +
           "vehicle: " + vehicle() + "\nstart: " + point(wish_.points.front()) + "}\n";
   const char* reached = ", tolerance_m: 1}\n";  // files of missions round points
@@ -159,16 +158,32 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
   if (wish_.start_time) {
     text += "start_time: " + exact_json_text(*wish_.start_time) + "\n";
   }
-  const double margin = flown_margin();
-  text += "constraints:  # by what a flight may be off, narrower than asked for\n";
-  text += "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) + "}\n";
+  return text;
+}
+
+std::string FirstRoute::heights(double margin) const {
+  std::string text = "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) + "}\n";
   if (heights_.max_m) {
     text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m - margin) + "}\n";
   }
+  return text;
+}
+
+std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) const {
+  std::string text = world(environment(volume, folder), volume) +
+                     "constraints:  # by what a flight may be off, narrower than asked for\n" +
+                     heights(flown_margin());
   if (!wish_.turn_radius_m) {
     text += "  - clearance: {min_m: " + text_of(kFlownWithin) + "}\n";
   }
   return text;
+}
+
+std::string FirstRoute::flown_scenario() const {
+  constexpr double kFar = 1e8;  // metres: the ground and the zones alone bound a flight
+  return world(environment(volume(kTries - 1), "."),
+               {Vec3::Constant(-kFar), Vec3::Constant(kFar)}) +
+         "constraints:\n" + heights(0);
 }
 
 std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,

@@ -31,6 +31,9 @@ class FirstRoute {
   bool repeats(int attempt) const;
   /// The files, to be written as scenario.yaml and pipeline.yaml in that folder.
   FirstFiles files(int attempt, const std::filesystem::path& folder) const;
+  /// The scenario in which the mission of a route is judged as it is flown: with the limits that
+  /// are wished for, in no volume. Its paths are relative to the current folder.
+  std::string flown_scenario() const;
   /// Where a route lies over voids of the models: a sentence, "" if nowhere.
   std::string over_voids(const Polyline& route) const;
 
@@ -42,6 +45,8 @@ class FirstRoute {
   std::string point(const WishedPoint& at) const;
   /// By how much the limits of height are narrower than wished for, as far as the points allow.
   double flown_margin() const;
+  std::string world(const std::string& environment, const Box& volume) const;
+  std::string heights(double margin) const;
   std::string scenario(const Box& volume, const std::filesystem::path& folder) const;
   std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
   double speed_mps() const;

@@ -92,6 +92,41 @@ const BandJudge::Requests& BandJudge::within(double reach_m) const {
   return by_reach_.emplace(reach, std::move(requests)).first->second;
 }
 
+void BandJudge::add_suspects(std::span<const Strip> strips, std::vector<bool>& is_suspect,
+                             std::size_t first) const {
+  if (strips.size() < 2) {
+    is_suspect[first] = true;
+    return;
+  }
+  // A line from end to end, and how far any strip reaches from it: a strip is convex, so that none
+  // of its points is farther away than its corners.
+  const Vec3& a = strips.front().from;
+  const Vec3& b = strips.back().to;
+  double reach = 0;
+  for (const Strip& strip : strips) {
+    for (const Vec3& corner : {strip.from, Vec3(strip.from.x(), strip.from.y(), strip.from_high_m),
+                               strip.to, Vec3(strip.to.x(), strip.to.y(), strip.to_high_m)}) {
+      reach = std::max(reach, point_leg_distance(corner, a, b) + strip.reach_m);
+    }
+  }
+  // Rounded up to half octaves: a request is made for each reach.
+  reach = std::exp2(std::ceil(2 * std::log2(std::max(reach, 1.0))) / 2);
+  if (leg_ok(std::nullopt, Leg::straight(a, b), within(reach).sky)) {
+    return;
+  }
+  const std::size_t half = strips.size() / 2;
+  add_suspects(strips.first(half), is_suspect, first);
+  add_suspects(strips.subspan(half), is_suspect, first + half);
+}
+
+std::vector<bool> BandJudge::suspects_in(const FlownPart& part) const {
+  std::vector<bool> is_suspect(part.strips.size(), false);
+  if (!sky_.layers().empty() && !part.strips.empty()) {
+    add_suspects(part.strips, is_suspect, 0);
+  }
+  return is_suspect;
+}
+
 std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_ground) {
   std::vector<Line> lines;
   const Vec3 along(strip.to.x() - strip.from.x(), strip.to.y() - strip.from.y(), 0);
@@ -167,14 +202,14 @@ bool BandJudge::is_below_ground(const Leg& leg) const {
   return request_.world->has_ground() && !(request_.world->ground_gap(leg.from, leg.to) >= -kTouch);
 }
 
-void BandJudge::judge_line(const Line& line, FlownPart::Ground ground,
+void BandJudge::judge_line(const Line& line, FlownPart::Ground ground, bool is_sky_clear,
                            std::vector<Worst>& worst) const {
   if (ground != FlownPart::Ground::kept_off) {
     judge_end(line, ground, worst);
     return;
   }
   const Requests& requests = within(line.reach_m);
-  if (leg_ok(std::nullopt, line.leg, requests.all)) {
+  if (leg_ok(std::nullopt, line.leg, is_sky_clear ? requests.ground : requests.all)) {
     return;
   }
   judge_sky(line, worst);
@@ -197,9 +232,10 @@ Vec3 BandJudge::place_of(const Worst& worst) const {
 std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const {
   std::vector<Worst> worst;
   looked_at_ = 0;
-  for (const Strip& strip : part.strips) {
-    for (const Line& line : lines_of(strip, request_.world->has_ground())) {
-      judge_line(line, part.ground, worst);
+  const std::vector<bool> is_suspect = suspects_in(part);
+  for (std::size_t n = 0; n < part.strips.size(); ++n) {
+    for (const Line& line : lines_of(part.strips[n], request_.world->has_ground())) {
+      judge_line(line, part.ground, !is_suspect[n], worst);
     }
   }
   std::vector<Found> found;
@@ -211,17 +247,24 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
 
 bool BandJudge::is_valid(const FlownPart& part) const {
   using Ground = FlownPart::Ground;
-  const auto is_line_valid = [&](const Line& line) {
+  const std::vector<bool> is_suspect = suspects_in(part);
+  const auto is_line_valid = [&](const Line& line, bool is_sky_clear) {
     const Requests& requests = within(line.reach_m);
-    return part.ground == Ground::kept_off
-               ? leg_ok(std::nullopt, line.leg, requests.all)
-               : leg_ok(std::nullopt, line.leg, requests.sky) && !is_too_high(line.leg) &&
-                     !(part.ground == Ground::touched_along && is_below_ground(line.leg));
+    if (part.ground == Ground::kept_off) {
+      return leg_ok(std::nullopt, line.leg, is_sky_clear ? requests.ground : requests.all);
+    }
+    return (is_sky_clear || leg_ok(std::nullopt, line.leg, requests.sky)) &&
+           !is_too_high(line.leg) &&
+           !(part.ground == Ground::touched_along && is_below_ground(line.leg));
   };
-  return std::all_of(part.strips.begin(), part.strips.end(), [&](const Strip& strip) {
-    const auto lines = lines_of(strip, request_.world->has_ground());
-    return std::all_of(lines.begin(), lines.end(), is_line_valid);
-  });
+  for (std::size_t n = 0; n < part.strips.size(); ++n) {
+    for (const Line& line : lines_of(part.strips[n], request_.world->has_ground())) {
+      if (!is_line_valid(line, !is_suspect[n])) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 LegHeights BandJudge::heights(const FlownPart& part) const {
@@ -231,7 +274,8 @@ LegHeights BandJudge::heights(const FlownPart& part) const {
     return heights;
   }
   for (const Strip& strip : part.strips) {
-    heights.lowest = std::min(heights.lowest, world.ground_gap(strip.from, strip.to));
+    heights.lowest =
+        std::min(heights.lowest, world.ground_gap(strip.from, strip.to, heights.lowest));
     heights.highest = std::max(
         heights.highest, world.ground_gap_max({strip.from.x(), strip.from.y(), strip.from_high_m},
                                               {strip.to.x(), strip.to.y(), strip.to_high_m}));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <vector>
 
 #include "altiplan/check.hpp"
@@ -53,7 +54,13 @@ class BandJudge {
 
   static std::vector<Line> lines_of(const Strip& strip, bool has_ground);
   const Requests& within(double reach_m) const;
-  void judge_line(const Line& line, FlownPart::Ground ground, std::vector<Worst>& worst) const;
+  /// Those of the strips that may violate the sky: halves of them are held against it as a whole,
+  /// until they are clear or one strip is left.
+  void add_suspects(std::span<const Strip> strips, std::vector<bool>& is_suspect,
+                    std::size_t first) const;
+  std::vector<bool> suspects_in(const FlownPart& part) const;
+  void judge_line(const Line& line, FlownPart::Ground ground, bool is_sky_clear,
+                  std::vector<Worst>& worst) const;
   void judge_end(const Line& line, FlownPart::Ground ground, std::vector<Worst>& worst) const;
   /// True if a leg is above a maximum height.
   bool is_too_high(const Leg& leg) const;

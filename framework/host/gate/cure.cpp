@@ -31,14 +31,16 @@ std::vector<Vec3> around() {
   return directions;
 }
 
-/// The minimum number of steps with which `holds`, found by strides and halving; 0: none.
+/// The minimum number of steps, more than `few`, with which `holds`, found by strides and halving;
+/// 0: none.
 template <class Holds>
-int min_steps(const Holds& holds, int max_steps) {
-  int few = 0;
-  int enough = 1;
+int min_steps(const Holds& holds, int few, int max_steps) {
+  const int first = few;
+  int enough = few + 1;
   while (!holds(enough)) {
     few = enough;
-    enough += std::max(std::min(enough, kStride), enough / 8);
+    const int tried = enough - first;
+    enough += std::max(std::min(tried, kStride), tried / 8);
     if (enough > max_steps) {
       return 0;
     }
@@ -103,7 +105,7 @@ bool Cures::is_valid(const std::vector<Cure>& changes, std::size_t before, std::
   try {
     for (const FlownMission& flown : fly_(plan)) {
       for (const FlownPart& part : flown.parts) {
-        work_ += double(part.strips.size()) / 10;  // to fly it
+        work_ += double(part.strips.size()) / 4;  // to fly it
         if (is_concerned(part)) {
           work_ += double(part.strips.size());
           if (!judge_.is_valid(part)) {
@@ -119,7 +121,7 @@ bool Cures::is_valid(const std::vector<Cure>& changes, std::size_t before, std::
 }
 
 std::optional<std::vector<Cure>> Cures::least_change(std::size_t before, std::size_t command,
-                                                     bool both,
+                                                     bool both, double off_m,
                                                      const std::vector<Vec3>& directions) {
   std::optional<std::vector<Cure>> best;
   int max_steps = kMaxSteps;
@@ -144,7 +146,7 @@ std::optional<std::vector<Cure>> Cures::least_change(std::size_t before, std::si
       };
       const int steps = min_steps(
           [&](int n) { return is_exhausted() || is_valid(changes(n), before, command, !both); },
-          max_steps);
+          std::max(0, int(std::min(off_m / kStep, double(kMaxSteps))) - 1), max_steps);
       if (steps != 0 && !is_exhausted() && (!best || steps < max_steps)) {
         best = changes(steps);
         max_steps = steps;
@@ -154,18 +156,16 @@ std::optional<std::vector<Cure>> Cures::least_change(std::size_t before, std::si
   return best;
 }
 
-std::optional<std::vector<Cure>> Cures::of_one(std::size_t before, std::size_t command) {
-  const auto by_height = least_change(before, command, false, up_and_down());
-  return by_height ? by_height : least_change(before, command, false, around());
-}
-
-std::optional<Cure> Cures::find(std::size_t before, std::size_t command) {
-  const auto change = of_one(before, command);
+std::optional<Cure> Cures::find(std::size_t before, std::size_t command, double off_m) {
+  auto change = least_change(before, command, false, off_m, up_and_down());
+  if (!change) {
+    change = least_change(before, command, false, off_m, around());
+  }
   return change ? std::optional(change->front()) : std::nullopt;
 }
 
 std::optional<formats::MissionFile> Cures::cured() {
-  work_ = 0;
+  max_work_ = kMaxWorkOfAll;
   const std::size_t max_rounds = 20 * plan_.commands.size();
   const auto first_invalid = [&]() -> std::optional<FlownPart> {
     for (FlownMission& flown : fly_(plan_)) {
@@ -182,12 +182,12 @@ std::optional<formats::MissionFile> Cures::cured() {
     if (!part) {
       return plan_;
     }
-    auto change = least_change(part->before, part->command, false, up_and_down());
+    auto change = least_change(part->before, part->command, false, 0, up_and_down());
     if (!change) {
-      change = least_change(part->before, part->command, true, up_and_down());
+      change = least_change(part->before, part->command, true, 0, up_and_down());
     }
     if (!change) {
-      change = least_change(part->before, part->command, false, around());
+      change = least_change(part->before, part->command, false, 0, around());
     }
     if (!change) {
       return std::nullopt;

@@ -33,29 +33,32 @@ class Cures {
   /// The least change of one command's height or, where none helps, the least shift toward one of
   /// 16 directions, of at most 1,000 m, with which the way from `before` to `command`, and what
   /// is flown to and from the changed command, is valid; none if there is none, or the time that a
-  /// search may take is over.
-  std::optional<Cure> find(std::size_t before, std::size_t command);
-  bool is_exhausted() const { return work_ > kMaxWork; }
+  /// search may take is over. Searched from changes of `off_m` on: by how much a limit is missed,
+  /// which no smaller change mends.
+  std::optional<Cure> find(std::size_t before, std::size_t command, double off_m);
+  bool is_exhausted() const { return work_ > max_work_; }
 
   /// The mission changed until it is valid, by cures of single commands and by raising or lowering
   /// both ends of a way; none where that fails.
   std::optional<formats::MissionFile> cured();
 
  private:
-  static constexpr double kMaxWork = 1e5;  ///< strips judged: about a second
+  // Strips judged, about 10 µs each: a check's answer does not wait for cures, --fix does.
+  static constexpr double kMaxWorkOfOne = 6e3;
+  static constexpr double kMaxWorkOfAll = 2e5;
 
   formats::MissionFile changed(const std::vector<Cure>& changes) const;
   /// True if, so changed, the way is valid, and with `all` what is flown to and from each change.
   bool is_valid(const std::vector<Cure>& changes, std::size_t before, std::size_t command,
                 bool all);
   std::optional<std::vector<Cure>> least_change(std::size_t before, std::size_t command, bool both,
-                                                const std::vector<Vec3>& directions);
-  std::optional<std::vector<Cure>> of_one(std::size_t before, std::size_t command);
+                                                double off_m, const std::vector<Vec3>& directions);
 
   formats::MissionFile plan_;
   const World& world_;
   Fly fly_;
   const BandJudge& judge_;
   double work_ = 0;
+  double max_work_ = kMaxWorkOfOne;
 };
 }  // namespace altiplan::host

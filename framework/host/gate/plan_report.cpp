@@ -101,23 +101,20 @@ class Gate {
   void judge(PlanReport& report) {
     report.commands = plan_.commands;
     report.autopilots = autopilots_;
-    for (const FlownMission& flown : flights(plan_)) {
+    const std::vector<FlownMission> all = flights();
+    for (const FlownMission& flown : all) {
       add_parts(report, flown);
       add_remarks(report, flown);
-      add_time(report, flown);
+      report.parameters.insert(report.parameters.end(), flown.parameters.begin(),
+                               flown.parameters.end());
     }
+    report.time = time_of(all);
     add_cures(report);
     note_autopilots(report);
     note_fence(report);
   }
 
-  TimeSpan time() const {
-    PlanReport report;
-    for (const FlownMission& flown : flights(plan_)) {
-      add_time(report, flown);
-    }
-    return report.time;
-  }
+  std::vector<FlownMission> flights() const { return flights(plan_); }
 
   std::optional<formats::MissionFile> cured() { return cures().cured(); }
 
@@ -248,15 +245,6 @@ class Gate {
     ways_.resize(report.findings.size());
   }
 
-  static void add_time(PlanReport& report, const FlownMission& flown) {
-    const bool is_first = report.time.max_s == 0;
-    report.time.min_s = is_first ? flown.time.min_s : std::min(report.time.min_s, flown.time.min_s);
-    report.time.max_s = std::max(report.time.max_s, flown.time.max_s);
-    for (const Parameters::Used& used : flown.parameters) {
-      report.parameters.push_back(used);
-    }
-  }
-
   void add_cures(PlanReport& report) {
     Cures search = cures();
     std::map<std::pair<std::size_t, std::size_t>, std::optional<Cure>> found;
@@ -265,14 +253,17 @@ class Gate {
         continue;
       }
       if (!found.contains(*ways_[n]) && !search.is_exhausted()) {
-        found[*ways_[n]] = search.find(ways_[n]->first, ways_[n]->second);
+        const Violation& violation = report.findings[n].violation;
+        const double off = violation.unit == "m" ? std::abs(violation.value - violation.limit) : 0;
+        found[*ways_[n]] = search.find(ways_[n]->first, ways_[n]->second, off);
       }
       if (const auto cure = found.find(*ways_[n]); cure != found.end()) {
         report.findings[n].cure = cure->second;
       }
     }
     if (search.is_exhausted()) {
-      report.notes.emplace_back("the search for cures was ended before all were found");
+      report.notes.emplace_back(
+          "not every cure was searched for: --fix searches longer, and writes the cured mission");
     }
   }
 
@@ -351,11 +342,21 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
 }
 }  // namespace
 
-TimeSpan estimated_time(const formats::MissionFile& plan, const GateOptions& options) {
+TimeSpan time_of(const std::vector<FlownMission>& flights) {
+  TimeSpan time{kInfinity, 0};
+  for (const FlownMission& flown : flights) {
+    time.min_s = std::min(time.min_s, flown.time.min_s);
+    time.max_s = std::max(time.max_s, flown.time.max_s);
+  }
+  return time;
+}
+
+std::vector<FlownMission> estimated_flights(const formats::MissionFile& plan,
+                                            const GateOptions& options) {
   const formats::MissionPoint& first = plan.items.front().at;
   Mission mission;
   mission.truth = World().with_frame(Frame::geographic(first.lon, first.lat, first.lat));
-  return Gate(plan, mission, options).time();
+  return Gate(plan, mission, options).flights();
 }
 
 PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,

@@ -90,8 +90,17 @@ struct GateOptions {
   bool own_ends = true;        ///< the route need not begin and end where the world's scenario says
 };
 
-/// Seconds of the flight, without a world: heights above ground count from home.
-TimeSpan estimated_time(const formats::MissionFile& plan, const GateOptions& options);
+/// From the fastest to the slowest of the flights.
+TimeSpan time_of(const std::vector<FlownMission>& flights);
+
+/// The flights by each autopilot that may fly it, without a world: heights above ground count from
+/// home.
+std::vector<FlownMission> estimated_flights(const formats::MissionFile& plan,
+                                            const GateOptions& options);
+
+/// What can be said of a mission without a world: its drawn length, and for each autopilot that may
+/// fly it time, heights, and what it refuses or what is not modelled; a line each.
+std::vector<std::string> flight_facts(const formats::MissionFile& plan, const GateOptions& options);
 
 /// Judges a mission as the autopilots that may fly it do: every part of the flight, the whole band
 /// that its parameters allow. A file without commands (KML, GPX, GeoJSON) is judged as drawn,

@@ -17,6 +17,8 @@ struct ExportOptions {
   formats::AltitudeFrame altitude = formats::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
+  /// The last point is circled by the autopilot, not left for home.
+  bool circles_at_end = false;
   /// Turns as circles where an autopilot flies them so; else all as points.
   bool loiters = false;
   /// Altitude of home above sea level; default: the ground below the start.

@@ -39,6 +39,9 @@ std::vector<MissionItem> items_of(const std::vector<MissionPlace>& places, const
     const Vec3 down = landing(mission, {places.back().at}, place);
     items.push_back({MissionItem::Kind::land, place(down), 0, ""});
   }
+  if (options.circles_at_end && !items.back().circle) {
+    items.back().kind = MissionItem::Kind::loiter;
+  }
   for (std::size_t n = 0; n < timing.size(); ++n) {
     items[n].speed_mps = timing[n].speed_mps;
   }

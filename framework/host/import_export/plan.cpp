@@ -49,7 +49,9 @@ std::array<double, 4> params_of(const MissionItem& item, const MissionText& text
     return {text.climb_deg, 0, 0, unset};  // pitch
   }
   if (!item.circle) {
-    return {0, 0, 0, unset};  // hold time, acceptance radius, pass-by distance, heading
+    // Hold time, acceptance radius, pass-by distance, heading. ArduPilot refuses loiters with a
+    // parameter that is not a number.
+    return {0, 0, 0, item.kind == MissionItem::Kind::loiter ? 0 : unset};
   }
   const double radius = radius_of(*item.circle, text.decimals.metres);
   switch (item.circle->until) {
@@ -60,7 +62,7 @@ std::array<double, 4> params_of(const MissionItem& item, const MissionText& text
     case Until::forever:
       break;
   }
-  return {0, 0, radius, unset};
+  return {0, 0, radius, 0};
 }
 
 PlanItem speed_item(double speed_mps, int decimals) {
