@@ -86,6 +86,26 @@ class Vehicle(unittest.TestCase):
                                               self.path("scenario.yaml"))
                     self.assertEqual(code, 0, out + err)
 
+    def test_a_mission_goes_up_as_it_is(self):
+        points = [[36.48, -84.38, 1100], [36.54, -84.30, 1200]]
+        items = [{"type": "SimpleItem", "command": 16, "frame": 0, "doJumpId": n + 1, "autoContinue": True,
+                  "params": [0, 0, 0, 0, *point]} for n, point in enumerate(points)]
+        plan = {"fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
+                "geoFence": {"version": 2, "polygons": [], "circles": [
+                    {"circle": {"center": [36.5, -84.34], "radius": 20000}, "inclusion": True, "version": 1}]},
+                "rallyPoints": {"version": 2, "points": [[36.49, -84.37, 200]]},
+                "mission": {"version": 2, "firmwareType": 3, "vehicleType": 2, "cruiseSpeed": 15,
+                            "hoverSpeed": 5, "plannedHomePosition": [36.48, -84.38, 400], "items": items}}
+        with open(self.path("mission.plan"), "w", encoding="utf-8") as file:
+            json.dump(plan, file)
+        address = self.vehicle("--autopilot", "ardupilot")
+        code, out, err = altiplan("upload", self.path("mission.plan"), "--to", address, "--terrain",
+                                  os.path.join(SOURCES, "configs", "data", "jacksboro_fault.tif"))
+        self.assertEqual(code, 0, out + err)
+        for line in ("mission: 2 items uploaded, read back equal", "fence: 1 items uploaded, read back equal",
+                     "rally points: 1 items uploaded, read back equal"):
+            self.assertIn(line, out)
+
     def test_ardupilot_keeps_a_take_off_and_a_landing(self):
         for kind in ("copter", "plane"):
             address = self.vehicle("--autopilot", "ardupilot", "--type", kind)

@@ -2,9 +2,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "altiplan/formats/iso_time.hpp"
 #include "altiplan/formats/mission_file.hpp"
-#include "check_plan.hpp"
 #include "commands.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
@@ -12,6 +10,7 @@
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
+#include "mission_options.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
 
@@ -21,9 +20,7 @@ namespace {
 struct CheckArguments {
   std::optional<std::string> result;
   std::optional<std::string> route;
-  PlanCheck plan;
-  std::optional<std::string> autopilot;
-  std::optional<std::string> vehicle;
+  MissionOptions mission;
   host::Overrides overrides;
 };
 
@@ -107,11 +104,12 @@ int check_result(const CheckArguments& arguments) {
   const host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
   return report(mission, *stored.route, stored.track, stored.telemetry,
-                host::build_events(config, mission), arguments.plan.json);
+                host::build_events(config, mission), arguments.mission.plan.json);
 }
 
 int check_route(const CheckArguments& arguments) {
-  const host::Config config = host::load_scenario(*arguments.plan.scenario, arguments.overrides);
+  const host::Config config =
+      host::load_scenario(*arguments.mission.plan.scenario, arguments.overrides);
   const host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
   const host::ImportedRoute imported = host::read_imported_route(*arguments.route, mission);
@@ -124,75 +122,7 @@ int check_route(const CheckArguments& arguments) {
         "limits are "
         "checked");
   }
-  return report(mission, imported.route, std::nullopt, false, {}, arguments.plan.json);
-}
-
-/// A mission in a world that options describe, in place of a scenario.
-void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
-  const auto metres = [&](const char* name, auto& value, const char* what) {
-    command.add_option(std::string(name) + " METRES", value, what)
-        ->check(number_from(0, 1e5))
-        ->needs(terrain);
-  };
-  command.add_option("--airspace FILE", plan.airspace, "zones over it; repeatable")
-      ->take_all()
-      ->one_at_a_time()
-      ->needs(terrain);
-  command.add_option("--crs EPSG:CODE", plan.crs, "coordinate system of a model that names none")
-      ->needs(terrain);
-  command
-      .add_flag("--permission", plan.has_permission,
-                "zones that take a permission are open, because you have it")
-      ->needs(terrain);
-  command
-      .add_flag(
-          "--fill-voids", plan.fills_voids,
-          "fill voids of the elevation model from their neighbours; else nothing may fly over "
-          "them")
-      ->needs(terrain);
-  metres("--radius", plan.radius_m, "radius of the vehicle (m, default 0)");
-  metres("--min-agl", plan.min_above_ground_m, "least height above ground (m)");
-  metres("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)");
-  metres("--max-distance", plan.max_ground_distance_m,
-         "greatest distance from the nearest point of the ground (m)");
-  command
-      .add_option("--start-time TIME", plan.start_time,
-                  "UTC, 2026-05-01T10:00:00Z: for zones with hours")
-      ->needs(terrain);
-  command
-      .add_option("--speed M/S", plan.gate.drawn_mps,
-                  "along lines of a file without commands, for zones with hours (m/s, default 5)")
-      ->check(number_from(0.01, 1000))
-      ->needs(terrain);
-}
-
-/// Who flies a mission, where its file does not say.
-void add_autopilot_options(App& command, CheckArguments& arguments) {
-  command.add_option("--autopilot NAME", arguments.autopilot, "who flies it: ardupilot or px4")
-      ->check(Check::one_of({"ardupilot", "px4"}));
-  command.add_option("--vehicle NAME", arguments.vehicle, "what flies: copter, plane or vtol")
-      ->check(Check::one_of({"copter", "plane", "vtol"}));
-  command.add_option("--params FILE", arguments.plan.parameters,
-                     "the autopilot's parameters (.param, .params), in place of its defaults");
-  command
-      .add_option("--runway DEGREES", arguments.plan.gate.flight.runway_deg,
-                  "heading of an aeroplane's take-off, clockwise from north")
-      ->check(number_from(0, 360));
-}
-
-/// The autopilot that the options name.
-void take_autopilot(CheckArguments& arguments) {
-  using formats::Airframe;
-  host::GateOptions& gate = arguments.plan.gate;
-  if (arguments.autopilot) {
-    gate.firmware =
-        *arguments.autopilot == "px4" ? formats::Firmware::px4 : formats::Firmware::ardupilot;
-  }
-  if (arguments.vehicle) {
-    gate.airframe = *arguments.vehicle == "copter"  ? Airframe::copter
-                    : *arguments.vehicle == "plane" ? Airframe::plane
-                                                    : Airframe::vtol;
-  }
+  return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json);
 }
 
 /// What is written besides the verdict; returns the options.
@@ -210,7 +140,8 @@ std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
 
 /// A mission whose ending is not its format's is told by --scenario or --terrain.
 bool is_plan(const CheckArguments& arguments) {
-  return arguments.result && (!arguments.plan.terrain.empty() || arguments.plan.scenario);
+  return arguments.result &&
+         (!arguments.mission.plan.terrain.empty() || arguments.mission.plan.scenario);
 }
 
 /// Throws UsageError for options that do not fit together.
@@ -221,16 +152,6 @@ void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>&
   }
   if (arguments.result && !is_plan(arguments) && formats::is_mission_file(*arguments.result)) {
     throw UsageError{*arguments.result + " is a mission: add --terrain DEM or --scenario FILE"};
-  }
-  if (arguments.plan.start_time && (arguments.plan.start_time->find('T') == std::string::npos ||
-                                    !formats::parse_iso_time(*arguments.plan.start_time))) {
-    throw UsageError{"--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
-                     *arguments.plan.start_time + "'"};
-  }
-  const auto& [low, high] =
-      std::pair(arguments.plan.min_above_ground_m, arguments.plan.max_above_ground_m);
-  if (low && high && !(*low < *high)) {
-    throw UsageError{"--min-agl: expected less than --max-agl"};
   }
   for (const Option* output : outputs) {
     if (output->count() > 0 && !is_plan(arguments)) {
@@ -244,11 +165,10 @@ void add_check(App& app, Action& action) {
   auto outputs = std::make_shared<std::vector<Option*>>();
   const auto prepare = [outputs](CheckArguments& given) {
     expect_fitting(given, *outputs);
-    given.plan.plan = given.result.value_or("");
-    take_autopilot(given);
+    given.mission.plan = checked_plan(given.mission, given.result.value_or(""));
   };
   const auto check = [](const CheckArguments& given) {
-    return is_plan(given) ? check_plan(given.plan, given.overrides)
+    return is_plan(given) ? check_plan(given.mission.plan, given.overrides)
            : given.result ? check_result(given)
                           : check_route(given);
   };
@@ -264,23 +184,13 @@ void add_check(App& app, Action& action) {
                                 "route file: JSON ([[x, y, z], …] in metres, or a result), CSV, "
                                 "or a mission")
                     ->excludes(result);
-  auto* scenario = command.add_option("--scenario FILE", arguments.plan.scenario,
+  auto* scenario = command.add_option("--scenario FILE", arguments.mission.plan.scenario,
                                       "scenario file in which to judge the route (YAML)");
-  auto* terrain =
-      command
-          .add_option("--terrain FILE", arguments.plan.terrain,
-                      "elevation model over which to judge a mission, without a scenario, or a "
-                      "folder of tiles; repeatable")
-          ->take_all()
-          ->one_at_a_time()
-          ->excludes(scenario)
-          ->needs(result);
+  add_mission_options(command, arguments.mission)->excludes(scenario)->needs(result);
   route->needs(scenario);
-  add_world_options(command, terrain, arguments.plan);
-  add_autopilot_options(command, arguments);
-  *outputs = add_outputs(command, arguments.plan);
+  *outputs = add_outputs(command, arguments.mission.plan);
   add_plugin_path(command, arguments.overrides);
-  command.add_flag("--json", arguments.plan.json, "print as JSON");
+  command.add_flag("--json", arguments.mission.plan.json, "print as JSON");
   set_example(command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");
 }
 }  // namespace altiplan::cli

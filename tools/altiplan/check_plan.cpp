@@ -324,21 +324,37 @@ host::WorldDuring world_during(const PlanCheck& plan, const formats::MissionFile
   };
 }
 
-int judged(PlanCheck plan, const std::optional<host::Config>& scenario,
-           const host::Overrides& overrides) {
-  const std::string text = formats::read_file(plan.plan);
-  const formats::MissionFile mission = formats::read_mission(plan.plan, text);
-  if (plan.fixed) {
-    static_cast<void>(host::changed_plan(text, mission.format, {}));  // refuses other formats
+PlanCheck prepared(PlanCheck plan) {
+  plan.gate.own_ends = !plan.scenario;
+  if (plan.parameters) {
+    plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
   }
-  host::expect_route(plan.plan, mission);
-  plan.gate.world_during = world_during(plan, mission, overrides);
-  const host::Mission world = busy("building the world", [&] {
-    return host::build_mission(scenario ? *scenario : world_of(plan, mission, overrides), 1);
+  return plan;
+}
+
+JudgedPlan judge(PlanCheck& plan, const std::string& text,
+                 const std::optional<host::Config>& scenario, const host::Overrides& overrides) {
+  JudgedPlan judged{formats::read_mission(plan.plan, text), {}, {}};
+  host::expect_route(plan.plan, judged.mission);
+  plan.gate.world_during = world_during(plan, judged.mission, overrides);
+  judged.world = busy("building the world", [&] {
+    return host::build_mission(scenario ? *scenario : world_of(plan, judged.mission, overrides), 1);
   });
-  PlanReport report = busy("judging the mission",
-                           [&] { return host::judge_plan(plan.plan, mission, world, plan.gate); });
-  add_notes(report, world);
+  judged.report = busy("judging the mission", [&] {
+    return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);
+  });
+  add_notes(judged.report, judged.world);
+  return judged;
+}
+
+int check(PlanCheck plan, const std::optional<host::Config>& scenario,
+          const host::Overrides& overrides) {
+  const std::string text = formats::read_file(plan.plan);
+  if (plan.fixed) {  // refuses other formats
+    static_cast<void>(host::changed_plan(text, formats::read_mission(plan.plan, text).format, {}));
+  }
+  JudgedPlan judged = judge(plan, text, scenario, overrides);
+  auto& [mission, world, report] = judged;
   if (const std::string words = left_out(plan); !words.empty()) {
     report.notes.insert(report.notes.begin(), words);
   }
@@ -359,20 +375,30 @@ int judged(PlanCheck plan, const std::optional<host::Config>& scenario,
 
 }  // namespace
 
+std::vector<std::string> JudgedPlan::findings() const {
+  std::vector<std::string> lines;
+  for (const Finding& finding : report.findings) {
+    lines.push_back(items_of(finding) + ": " + finding.violation.message);
+  }
+  return lines;
+}
+
+JudgedPlan judged_plan(const PlanCheck& given, const host::Overrides& overrides) {
+  expect_files(given);
+  PlanCheck plan = prepared(given);
+  return judge(plan, formats::read_file(plan.plan), std::nullopt, overrides);
+}
+
 int check_plan(const PlanCheck& given, const host::Overrides& overrides) {
   expect_files(given);
-  PlanCheck plan = given;
-  plan.gate.own_ends = !plan.scenario;
-  if (plan.parameters) {
-    plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
-  }
+  PlanCheck plan = prepared(given);
   std::optional<host::Config> scenario;
   if (plan.scenario) {
     scenario = host::load_scenario(*plan.scenario, overrides);
   }
   expect_outputs(plan, scenario ? scenario->files : decltype(scenario->files){});
   try {
-    return judged(plan, scenario, overrides);
+    return check(plan, scenario, overrides);
   } catch (const Error& error) {
     const std::string message = about_file(error.what());
     // What an earlier call wrote would be taken for this one's verdict.

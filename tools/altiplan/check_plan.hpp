@@ -33,6 +33,19 @@ struct PlanCheck {
   std::optional<std::string> fixed;
 };
 
+/// A mission, the world in which it is flown, and the verdict.
+struct JudgedPlan {
+  formats::MissionFile mission;
+  host::Mission world;
+  host::PlanReport report;
+
+  /// What is wrong with it, a line each.
+  std::vector<std::string> findings() const;
+};
+
+/// Judges a ground station's mission; prints and writes nothing.
+JudgedPlan judged_plan(const PlanCheck& plan, const host::Overrides& overrides);
+
 /// Judges a ground station's mission; prints each violation with its items, its place and, where
 /// one item's change cures it, that change. Writes a certificate, JUnit XML and the cured mission
 /// where asked to. Returns the exit code.

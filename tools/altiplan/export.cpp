@@ -5,6 +5,8 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
+#include "host/import_export/plan.hpp"
+#include "mission_options.hpp"
 #include "route_export.hpp"
 
 namespace altiplan::cli {
@@ -14,6 +16,7 @@ using Format = formats::MissionFile::Format;
 
 struct ExportArguments {
   RouteExport route;
+  MissionOptions mission;
   std::optional<std::string> to;
   std::optional<std::string> out;
   std::optional<std::string> fence;
@@ -58,9 +61,57 @@ bool write_fence(const LoadedRoute& route, const std::string& file) {
   return fence.text.has_value();
 }
 
+/// Its own commands, where the format has some; else its positions. None, which is reported: the
+/// mission does not pass.
+std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
+  const std::string& file = arguments.route.result;
+  JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.route.overrides);
+  if (!judged.report.passed()) {
+    std::cerr << "altiplan: " << file << ": " << word_of(judged.report.verdict())
+              << ": not written\n";
+    for (const std::string& finding : judged.findings()) {
+      std::cerr << "  " << finding << '\n';
+    }
+    return std::nullopt;
+  }
+  const std::optional<Format>& format = arguments.route.options.format;
+  if (format == Format::qgc_plan || format == Format::waypoints) {
+    const host::Plan plan = host::plan_of(judged.mission);
+    if (format == Format::waypoints && !(plan.fence.empty() && plan.rally.empty())) {
+      warn("QGC WPL 110 holds the mission alone: its fence and rally points are left out");
+    }
+    return format == Format::qgc_plan ? host::plan_text(plan) : host::waypoints_text(plan);
+  }
+  host::ExportSource source;
+  source.name = std::filesystem::path(file).stem().string();
+  source.route = judged.report.imported.route;
+  judged.world.request.start.position = source.route.front();
+  judged.world.request.goal = {source.route.back()};
+  judged.world.request.goal.tolerance_m = 1;
+  const host::Exported written = host::export_route(judged.world, source, arguments.route.options);
+  for (const std::string& message : written.messages) {
+    std::cerr << "altiplan: " << message << '\n';
+  }
+  return written.text;
+}
+
+int write_mission(const ExportArguments& arguments) {
+  expect_apart(arguments.out, "-o", {arguments.route.result});
+  const std::optional<std::string> text = text_of_mission(arguments);
+  if (text && arguments.out) {
+    host::write_file(*arguments.out, *text);
+  } else if (text) {
+    std::cout << *text;
+  }
+  return text ? kDone : kNoRoute;
+}
+
 int export_result(const ExportArguments& arguments) {
   expect_writable(arguments.out, "-o");
   expect_writable(arguments.fence, "--fence");
+  if (is_mission(arguments.mission, arguments.route.result)) {
+    return write_mission(arguments);
+  }
   const std::optional<LoadedRoute> route = loaded(arguments.route, arguments.out);
   const std::optional<host::Exported> written =
       route ? exported(*route, arguments.route) : std::nullopt;
@@ -84,11 +135,16 @@ int export_result(const ExportArguments& arguments) {
 void add_export(App& app, Action& action) {
   const auto prepare = [](ExportArguments& arguments) {
     arguments.route.options.format = formats().at(format_of(arguments));
+    if (is_mission(arguments.mission, arguments.route.result)) {
+      expect_no_item_options(arguments.route, arguments.fence.has_value());
+      arguments.mission.plan = checked_plan(arguments.mission, arguments.route.result);
+    }
     finish_options(arguments.route);
   };
   auto [command, arguments] = add_command<ExportArguments>(
-      app, action, "export", "write a result's route for ground control stations and maps",
-      export_result, prepare);
+      app, action, "export",
+      "write a result's route, or a mission, for ground control stations and maps", export_result,
+      prepare);
   command
       .add_option("--to FORMAT", arguments.to,
                   "format: qgc-plan, waypoints, kml, geojson, gpx or csv (default: by -o)")
@@ -97,6 +153,7 @@ void add_export(App& app, Action& action) {
   command.add_option("--fence FILE", arguments.fence,
                      "also write the zones as a fence file for Mission Planner (QGC WPL 110)");
   add_route_export(command, arguments.route);
+  add_mission_options(command, arguments.mission);
   command.add_flag("--flight", arguments.route.flight,
                    "export the flown track instead of the route");
   set_example(command, "altiplan export result.json --takeoff --land -o ridge.plan");

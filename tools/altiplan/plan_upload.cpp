@@ -37,6 +37,9 @@ bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence
   if (!plan.fence.empty() && with_fence) {
     is_equal = upload(connection, plan, link::PlanType::fence, plan.fence.size()) && is_equal;
   }
+  if (!plan.rally.empty()) {
+    is_equal = upload(connection, plan, link::PlanType::rally, plan.rally.size()) && is_equal;
+  }
   return is_equal;
 }
 

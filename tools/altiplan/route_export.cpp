@@ -48,7 +48,11 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
 }  // namespace
 
 void add_route_export(App& command, RouteExport& route) {
-  command.add_option("result", route.result, "result file of altiplan run (JSON)")->required();
+  command
+      .add_option("file", route.result,
+                  "result file of altiplan run (JSON), or with --terrain a mission (.plan, "
+                  ".waypoints, …)")
+      ->required();
   command
       .add_option("--altitude FROM", route.altitude,
                   "altitude reference: sea, ground or home (default sea)")
@@ -71,6 +75,17 @@ void add_route_export(App& command, RouteExport& route) {
                   "valid (default: no limit)")
       ->check(Check::between(2, 1'000'000));
   add_plugin_path(command, route.overrides);
+}
+
+void expect_no_item_options(const RouteExport& route, bool has_fence) {
+  const host::ExportOptions& options = route.options;
+  if (options.takeoff || options.land || options.home_altitude_m || options.max_items ||
+      route.altitude != "sea" || route.arcs != "points" || route.flight || has_fence) {
+    throw UsageError{
+        route.result +
+        " is a mission, which has its own items: --takeoff, --land, --altitude, --arcs, "
+        "--home-altitude, --max-items, --fence and --flight are for results"};
+  }
 }
 
 void finish_options(RouteExport& route) {

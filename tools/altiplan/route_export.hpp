@@ -19,6 +19,8 @@ struct RouteExport {
 
 /// Adds the result and the options of its items.
 void add_route_export(App& command, RouteExport& route);
+/// Throws UsageError for options of a result's items, which a mission has of its own.
+void expect_no_item_options(const RouteExport& route, bool has_fence);
 /// Ends the options; throws UsageError where they cannot be combined.
 void finish_options(RouteExport& route);
 

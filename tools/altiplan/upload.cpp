@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "mission_options.hpp"
 #include "plan_upload.hpp"
 #include "route_export.hpp"
 
@@ -7,18 +8,31 @@ namespace {
 
 struct UploadArguments {
   RouteExport route;
+  MissionOptions mission;
   LinkOptions link;
   bool no_fence = false;
 };
 
+/// A mission's own items, if it passes; a result's route as it is written.
+std::optional<host::Plan> plan_of(const UploadArguments& arguments) {
+  const std::string& file = arguments.route.result;
+  if (!is_mission(arguments.mission, file)) {
+    const std::optional<host::Exported> written = exported(arguments.route, std::nullopt);
+    return written ? std::optional(plan_to_upload(*written)) : std::nullopt;
+  }
+  if (check_plan(arguments.mission.plan, arguments.route.overrides) != kDone) {
+    return std::nullopt;
+  }
+  return host::plan_of(formats::read_mission(file));
+}
+
 int upload_result(const UploadArguments& arguments) {
-  const std::optional<host::Exported> written = exported(arguments.route, std::nullopt);
-  if (!written) {
+  const std::optional<host::Plan> plan = plan_of(arguments);
+  if (!plan) {
     return kNoRoute;
   }
-  const host::Plan plan = plan_to_upload(*written);
   return connected(arguments.link, [&](Connection& connection) {
-    return upload_plan(connection, plan, !arguments.no_fence) ? kDone : kNoRoute;
+    return upload_plan(connection, *plan, !arguments.no_fence) ? kDone : kNoRoute;
   });
 }
 }  // namespace
@@ -26,14 +40,19 @@ int upload_result(const UploadArguments& arguments) {
 void add_upload(App& app, Action& action) {
   const auto prepare = [](UploadArguments& arguments) {
     arguments.route.options.format = formats::MissionFile::Format::qgc_plan;
+    if (is_mission(arguments.mission, arguments.route.result)) {
+      expect_no_item_options(arguments.route, false);
+      arguments.mission.plan = checked_plan(arguments.mission, arguments.route.result);
+    }
     finish_options(arguments.route);
   };
   auto [command, arguments] = add_command<UploadArguments>(
       app, action, "upload",
-      "judge a result's route, upload it to a vehicle and compare what that holds", upload_result,
-      prepare);
+      "judge a result's route or a mission, upload it to a vehicle and compare what that holds",
+      upload_result, prepare);
   add_link_options(command, "--to", arguments.link);
   add_route_export(command, arguments.route);
+  add_mission_options(command, arguments.mission);
   add_no_fence(command, arguments.no_fence);
   set_example(command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
 }

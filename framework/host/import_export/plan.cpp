@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/import_export/plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "altiplan/error.hpp"
 #include "altiplan/geometry.hpp"
 
 namespace altiplan::host {
@@ -143,6 +145,38 @@ Plan plan_of(const MissionText& text) {
     plan.items.push_back(item_of(item, text));
   }
   plan.fence = fence_of(text.mission.zones, text.decimals);
+  return plan;
+}
+
+Plan plan_of(const formats::MissionFile& mission) {
+  if (mission.commands.empty()) {
+    throw Error("expected a mission with commands (.plan, .waypoints)");
+  }
+  Plan plan;
+  plan.autopilot = mission.firmware > 0 ? mission.firmware : plan.autopilot;
+  plan.vehicle = mission.vehicle_type > 0 ? mission.vehicle_type : plan.vehicle;
+  plan.speed_mps = mission.cruise_mps > 0 ? mission.cruise_mps : plan.speed_mps;
+  plan.home = mission.home;
+  for (const formats::MissionCommand& command : mission.commands) {
+    if (command.number == 0) {
+      throw Error(command.place + ": a complex item that contains no commands");
+    }
+    PlanItem item{command.number, command.frame};
+    std::copy(command.params.begin(), command.params.end(), item.params.begin());
+    item.params[4] = command.lat;
+    item.params[5] = command.lon;
+    item.params[6] = command.altitude_m;
+    item.continues = command.auto_continue;
+    plan.items.push_back(item);
+  }
+  plan.fence = fence_of(mission.zones, plan.decimals);
+  for (const formats::MissionPoint& point : mission.rally) {
+    PlanItem item{Command::kRallyPoint, frame_of(point.frame)};
+    item.params[4] = point.lat;
+    item.params[5] = point.lon;
+    item.params[6] = point.altitude_m;
+    plan.rally.push_back(item);
+  }
   return plan;
 }
 }  // namespace altiplan::host

@@ -53,6 +53,10 @@ struct Plan {
 /// The items; before one with a speed of its own stands the command for that speed.
 Plan plan_of(const MissionText& mission);
 
+/// A file's own commands, fence and rally points. Throws Error for a file without commands, or with
+/// a complex item that contains none.
+Plan plan_of(const formats::MissionFile& mission);
+
 /// QGroundControl's `.plan`.
 std::string plan_text(const Plan& plan);
 /// The `QGC WPL 110` text of its mission.

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mission_options.hpp"
+
+#include "altiplan/formats/iso_time.hpp"
+#include "altiplan/formats/mission_file.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+/// A mission in a world that options describe, in place of a scenario.
+void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
+  const auto metres = [&](const char* name, auto& value, const char* what) {
+    command.add_option(std::string(name) + " METRES", value, what)
+        ->check(number_from(0, 1e5))
+        ->needs(terrain);
+  };
+  command.add_option("--airspace FILE", plan.airspace, "zones over it; repeatable")
+      ->take_all()
+      ->one_at_a_time()
+      ->needs(terrain);
+  command.add_option("--crs EPSG:CODE", plan.crs, "coordinate system of a model that names none")
+      ->needs(terrain);
+  command
+      .add_flag("--permission", plan.has_permission,
+                "zones that take a permission are open, because you have it")
+      ->needs(terrain);
+  command
+      .add_flag(
+          "--fill-voids", plan.fills_voids,
+          "fill voids of the elevation model from their neighbours; else nothing may fly over "
+          "them")
+      ->needs(terrain);
+  metres("--radius", plan.radius_m, "radius of the vehicle (m, default 0)");
+  metres("--min-agl", plan.min_above_ground_m, "least height above ground (m)");
+  metres("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)");
+  metres("--max-distance", plan.max_ground_distance_m,
+         "greatest distance from the nearest point of the ground (m)");
+  command
+      .add_option("--start-time TIME", plan.start_time,
+                  "UTC, 2026-05-01T10:00:00Z: for zones with hours")
+      ->needs(terrain);
+  command
+      .add_option("--speed M/S", plan.gate.drawn_mps,
+                  "along lines of a file without commands, for zones with hours (m/s, default 5)")
+      ->check(number_from(0.01, 1000))
+      ->needs(terrain);
+}
+
+/// Who flies a mission, where its file does not say.
+void add_autopilot_options(App& command, MissionOptions& mission) {
+  command.add_option("--autopilot NAME", mission.autopilot, "who flies it: ardupilot or px4")
+      ->check(Check::one_of({"ardupilot", "px4"}));
+  command.add_option("--vehicle NAME", mission.vehicle, "what flies: copter, plane or vtol")
+      ->check(Check::one_of({"copter", "plane", "vtol"}));
+  command.add_option("--params FILE", mission.plan.parameters,
+                     "the autopilot's parameters (.param, .params), in place of its defaults");
+  command
+      .add_option("--runway DEGREES", mission.plan.gate.flight.runway_deg,
+                  "heading of an aeroplane's take-off, clockwise from north")
+      ->check(number_from(0, 360));
+}
+}  // namespace
+
+Option* add_mission_options(App& command, MissionOptions& mission) {
+  Option* terrain =
+      command
+          .add_option("--terrain FILE", mission.plan.terrain,
+                      "elevation model over which to judge a mission, or a folder of tiles; "
+                      "repeatable")
+          ->take_all()
+          ->one_at_a_time();
+  add_world_options(command, terrain, mission.plan);
+  add_autopilot_options(command, mission);
+  return terrain;
+}
+
+PlanCheck checked_plan(const MissionOptions& mission, const std::string& file) {
+  using formats::Airframe;
+  PlanCheck plan = mission.plan;
+  plan.plan = file;
+  if (plan.start_time && (plan.start_time->find('T') == std::string::npos ||
+                          !formats::parse_iso_time(*plan.start_time))) {
+    throw UsageError{"--start-time: expected a time such as 2026-05-01T10:00:00Z, found '" +
+                     *plan.start_time + "'"};
+  }
+  if (plan.min_above_ground_m && plan.max_above_ground_m &&
+      !(*plan.min_above_ground_m < *plan.max_above_ground_m)) {
+    throw UsageError{"--min-agl: expected less than --max-agl"};
+  }
+  if (mission.autopilot) {
+    plan.gate.firmware =
+        *mission.autopilot == "px4" ? formats::Firmware::px4 : formats::Firmware::ardupilot;
+  }
+  if (mission.vehicle) {
+    plan.gate.airframe = *mission.vehicle == "copter"  ? Airframe::copter
+                         : *mission.vehicle == "plane" ? Airframe::plane
+                                                       : Airframe::vtol;
+  }
+  return plan;
+}
+
+bool is_mission(const MissionOptions& mission, const std::string& file) {
+  if (mission.plan.terrain.empty() && formats::is_mission_file(file)) {
+    throw UsageError{file + " is a mission: add --terrain DEM, over which it is judged"};
+  }
+  return !mission.plan.terrain.empty();
+}
+}  // namespace altiplan::cli

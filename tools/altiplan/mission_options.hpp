@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "check_plan.hpp"
+#include "commands.hpp"
+
+namespace altiplan::cli {
+
+/// How a mission's file is to be judged, as options say it.
+struct MissionOptions {
+  PlanCheck plan;
+  std::optional<std::string> autopilot;
+  std::optional<std::string> vehicle;
+};
+
+/// Adds --terrain, which is returned, and what goes with it: the world, and who flies.
+Option* add_mission_options(App& command, MissionOptions& mission);
+
+/// The mission in `file`, with these options; throws UsageError where they contradict each other.
+PlanCheck checked_plan(const MissionOptions& mission, const std::string& file);
+
+/// True if `file`, of a command that takes results too, is a mission. Throws UsageError for one
+/// without --terrain.
+bool is_mission(const MissionOptions& mission, const std::string& file);
+}  // namespace altiplan::cli
