@@ -93,12 +93,22 @@ CommandLong mode_command(const Vehicle& vehicle, FlightMode mode) {
                                            : modes.hold;
     return command_to(vehicle, VehicleCommand::kSetMode, kCustomFlag, static_cast<float>(number));
   }
-  if (vehicle.heartbeat.autopilot == kPx4) {
+  if (vehicle.is_px4()) {
     const Px4Mode& px4 = is_mission ? kPx4Mission : is_commanded ? kPx4Commanded : kPx4Hold;
     return command_to(vehicle, VehicleCommand::kSetMode, kCustomFlag, static_cast<float>(px4.main),
                       static_cast<float>(px4.sub));
   }
   return command_to(vehicle, VehicleCommand::kSetMode, generic_flags(mode));
+}
+
+int first_item(const Vehicle& vehicle) { return vehicle.is_ardupilot() ? 1 : 0; }
+
+MissionSetCurrent set_current(const Vehicle& vehicle, int item) {
+  MissionSetCurrent set;
+  set.target_system = vehicle.address.system;
+  set.target_component = vehicle.address.component;
+  set.seq = static_cast<std::uint16_t>(item);
+  return set;
 }
 
 CommandLong command_to(const Vehicle& vehicle, std::uint16_t command, float param1, float param2,

@@ -23,6 +23,9 @@ struct VehicleCommand {
   static constexpr std::uint16_t kArm = 400;
   static constexpr std::uint16_t kSetMessageInterval = 511;
 };
+/// The number of a mission's first item: to ArduPilot item 0 is home.
+int first_item(const Vehicle& vehicle);
+MissionSetCurrent set_current(const Vehicle& vehicle, int item);
 CommandLong command_to(const Vehicle& vehicle, std::uint16_t command, float param1 = 0,
                        float param2 = 0, float param3 = 0);
 }  // namespace altiplan::link

@@ -7,9 +7,8 @@
 namespace altiplan::link {
 namespace {
 
+constexpr std::uint8_t kWarning = 4;  ///< MAV_SEVERITY
 constexpr Time kHeartbeatPeriod{1000};
-/// So long a stop may wait.
-constexpr Time kReceiveSlice{100};
 /// Longer than any packet takes on a line of 57,600 baud.
 constexpr Time kSilence{60};
 
@@ -60,6 +59,10 @@ std::optional<Packet> Link::receive(Time wait) {
       send(own_heartbeat());
     }
     if (std::optional<Packet> packet = parser_.next()) {
+      const auto* text = std::get_if<Statustext>(&packet->message);
+      if (text != nullptr && text->severity <= kWarning) {
+        warning_ = texts_.joined(*text);
+      }
       return packet;
     }
     if (now > end) {
@@ -81,6 +84,7 @@ std::optional<Packet> Link::receive(Time wait) {
 }
 
 bool Vehicle::is_ardupilot() const { return heartbeat.autopilot == kArduPilot; }
+bool Vehicle::is_px4() const { return heartbeat.autopilot == kPx4; }
 
 Vehicle await_vehicle(Link& link, std::optional<std::uint8_t> system, Time timeout,
                       const std::stop_token& stop) {

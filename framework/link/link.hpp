@@ -6,9 +6,13 @@
 #include <stop_token>
 
 #include "link/mission_transfer.hpp"
+#include "link/status_text.hpp"
 #include "link/transport.hpp"
 
 namespace altiplan::link {
+
+/// So long a stop may wait.
+inline constexpr Time kReceiveSlice{100};
 
 /// Monotonic, for mission transfers and timeouts.
 Time time_now();
@@ -31,6 +35,10 @@ class Link {
   /// The next packet that arrives within the time; sends a heartbeat where it is due.
   std::optional<Packet> receive(Time wait);
 
+  /// The last status text of severity warning or worse, of any vehicle; "" for none since.
+  const std::string& warning() const { return warning_; }
+  void forget_warning() { warning_.clear(); }
+
   const Address& self() const { return self_; }
   const PacketCounts& counts() const { return parser_.counts(); }
 
@@ -39,6 +47,8 @@ class Link {
   Address self_;
   std::optional<Signer> signer_;
   Parser parser_;
+  StatusText texts_;
+  std::string warning_;
   std::uint8_t sequence_ = 0;
   std::optional<Time> last_heartbeat_;
   Time last_arrival_{0};
@@ -50,6 +60,7 @@ struct Vehicle {
   Heartbeat heartbeat;
 
   bool is_ardupilot() const;
+  bool is_px4() const;
 };
 
 /// The first vehicle that sends a heartbeat, or the one with this system id; throws LinkError if

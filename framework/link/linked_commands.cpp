@@ -96,9 +96,10 @@ void LinkedVehicle::hand_back(int item) {
 
 void LinkedVehicle::ask(FlightMode mode) {
   if (++asks_ > kMaxAsks) {
-    give_up("the vehicle does not change its mode, " + feed_.mode_name() + feed_.quoted_text());
+    give_up_in_hold("the vehicle does not change its mode, " + feed_.mode_name() +
+                    feed_.quoted_text());
   }
-  feed_.send(feed_.request(mode));
+  feed_.send(mode_command(feed_.vehicle(), mode));
   ask_at_ = time_now() + kAskAgain;
 }
 
@@ -134,7 +135,7 @@ void LinkedVehicle::release() {
   for (const Time end = time_now() + kTimeout;
        commands_ && feed_.mode() != FlightMode::hold && time_now() < end;) {
     if (time_now() >= ask_at) {
-      feed_.send(feed_.request(FlightMode::hold));
+      feed_.send(mode_command(feed_.vehicle(), FlightMode::hold));
       ask_at = time_now() + kAgain;
     }
     feed_.next(kAgain / 10);

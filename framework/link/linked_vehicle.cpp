@@ -15,8 +15,6 @@ using host::RouteAhead;
 using host::VehicleLost;
 
 constexpr Time kLostAfter{5000};
-/// So long a stop may wait.
-constexpr Time kFeedSlice{100};
 /// Longer than a heartbeat takes to report a mode that has just been changed.
 constexpr Time kStrange{1500};
 /// Without a position, or the item that it flies to, the vehicle is asked to send them.
@@ -58,7 +56,9 @@ State LinkedVehicle::take_off(const Request& request, const RouteAhead& /*route*
   } else if (!flies_route()) {
     flight_.say("waiting for the vehicle to fly its mission (--arm starts it)");
   }
+  told_at_ = time_now();
   while (!flies_route() && next_position()) {
+    watch_start();
   }
   is_flying_ = true;
   await_nearest(first.position);
@@ -87,7 +87,7 @@ void LinkedVehicle::await_position() {
       return;
     }
     expect_in_reach();
-    feed_.next(kFeedSlice);
+    feed_.next(kReceiveSlice);
     if (time_now() >= ask_at) {
       ask_for_reports();
       ask_at += kAskForReports;
@@ -112,28 +112,22 @@ bool LinkedVehicle::flies_route() const {
 }
 
 int LinkedVehicle::number_of(std::size_t item) const {
-  return int(item) + (feed_.vehicle().is_ardupilot() ? 1 : 0);  // to which item 0 is home
+  return int(item) + first_item(feed_.vehicle());
 }
 
 void LinkedVehicle::start_mission() {
-  const Vehicle& vehicle = feed_.vehicle();
-  const bool is_copter = vehicle.is_ardupilot() && !is_fixed_wing(vehicle.heartbeat);
-  const auto change_mode = [&](FlightMode mode) {
-    expect_done(feed_.request(mode),
-                mode == FlightMode::mission ? "to fly its mission" : "the mode that it arms in");
-  };
-  feed_.set_item(number_of(0));
-  if (is_copter && !feed_.is_armed()) {
-    change_mode(FlightMode::commanded);  // ArduCopter does not arm in AUTO
-  } else {
-    change_mode(FlightMode::mission);
-  }
-  if (!feed_.is_armed()) {
-    expect_done(command_to(vehicle, VehicleCommand::kArm, 1), "to arm");
-  }
-  if (is_copter) {
-    change_mode(FlightMode::mission);
-    expect_done(command_to(vehicle, VehicleCommand::kStartMission), "to start its mission");
+  begin_at_first_item();
+  const bool was_armed = feed_.is_armed();
+  try {
+    arm_and_start();
+  } catch (const VehicleLost&) {
+    if (!was_armed) {  // or its motors would run on
+      constexpr int kTimes = 3;
+      for (int n = 0; n < kTimes; ++n) {
+        feed_.send(command_to(feed_.vehicle(), VehicleCommand::kArm, 0));
+      }
+    }
+    throw;
   }
   if (stop_.stop_requested()) {
     return;
@@ -141,36 +135,102 @@ void LinkedVehicle::start_mission() {
   constexpr float kAir = 0;
   constexpr float kGround = 1;
   const auto& wing = request_->vehicle.wing;
-  feed_.send(command_to(vehicle, VehicleCommand::kChangeSpeed, wing ? kAir : kGround,
+  feed_.send(command_to(feed_.vehicle(), VehicleCommand::kChangeSpeed, wing ? kAir : kGround,
                         float(wing ? wing->airspeed_mps : request_->vehicle.speed_mps), -1));
 }
 
-void LinkedVehicle::expect_done(const CommandLong& command, const std::string& what) {
-  constexpr int kTries = 3;
-  constexpr Time kTimeout{1500};
+void LinkedVehicle::begin_at_first_item() {
+  constexpr int kTries = 12;
+  constexpr Time kTimeout{500};
+  const int first = number_of(0);
+  for (int n = 0; n < kTries && !stop_.stop_requested(); ++n) {
+    feed_.set_item(first);
+    for (const Time end = time_now() + kTimeout; time_now() < end && !stop_.stop_requested();) {
+      expect_in_reach();
+      feed_.next(kReceiveSlice);
+      if (feed_.current_item() == first) {
+        return;
+      }
+    }
+  }
+  if (!stop_.stop_requested()) {
+    give_up("the vehicle does not confirm that its mission begins with item " +
+            std::to_string(first) +
+            (feed_.current_item() ? ": it says " + std::to_string(*feed_.current_item()) : "") +
+            feed_.quoted_text());
+  }
+}
+
+void LinkedVehicle::arm_and_start() {
+  const Vehicle& vehicle = feed_.vehicle();
+  const bool is_copter = vehicle.is_ardupilot() && !is_fixed_wing(vehicle.heartbeat);
+  const char* to_fly = "to fly its mission";
+  if (is_copter && !feed_.is_armed()) {
+    change_mode(FlightMode::commanded, "the mode that it arms in");  // not armed in AUTO
+  } else {
+    change_mode(FlightMode::mission, to_fly);
+  }
+  if (!feed_.is_armed()) {
+    expect(command_to(vehicle, VehicleCommand::kArm, 1), "to arm",
+           [&] { return feed_.is_armed(); });
+  }
+  if (is_copter) {
+    change_mode(FlightMode::mission, to_fly);
+    expect(command_to(vehicle, VehicleCommand::kStartMission), "to start its mission",
+           [&] { return feed_.acknowledged(VehicleCommand::kStartMission) == 0; });
+  }
+}
+
+void LinkedVehicle::change_mode(FlightMode mode, const std::string& what) {
+  expect(mode_command(feed_.vehicle(), mode), what, [&] { return feed_.mode() == mode; });
+}
+
+void LinkedVehicle::expect(const CommandLong& command, const std::string& what,
+                           const std::function<bool()>& is_done) {
+  constexpr int kTries = 5;
+  constexpr Time kTimeout{1500};  // heartbeats come each second
   for (int n = 0; n < kTries && !stop_.stop_requested(); ++n) {
     feed_.send(command);
     for (const Time end = time_now() + kTimeout; time_now() < end && !stop_.stop_requested();) {
       expect_in_reach();
-      feed_.next(kFeedSlice);
-      if (const std::optional<int> result = feed_.acknowledged(command.command)) {
-        if (*result == 0) {
-          return;
-        }
+      feed_.next(kReceiveSlice);
+      if (is_done()) {
+        return;
+      }
+      if (feed_.acknowledged(command.command).value_or(0) != 0) {
         await_words();
         give_up("the vehicle refuses " + what + feed_.quoted_text());
       }
     }
   }
   if (!stop_.stop_requested()) {
-    give_up("the vehicle does not answer the command " + what);
+    give_up("the vehicle does not answer the command " + what + feed_.quoted_text());
+  }
+}
+
+void LinkedVehicle::watch_start() {
+  constexpr Time kTellAgain{30'000};
+  if (flight_.arm && feed_.mode() == FlightMode::mission && feed_.is_armed()) {
+    strange_since_.reset();
+  } else if (flight_.arm) {
+    strange_since_ = strange_since_.value_or(time_now());
+    if (time_now() > *strange_since_ + kStrange) {
+      give_up("the vehicle has left its mission before the first item: " +
+              (feed_.is_armed() ? "it is in the mode " + feed_.mode_name() : "it has disarmed") +
+              feed_.quoted_text());
+    }
+  }
+  if (time_now() > told_at_ + kTellAgain) {
+    told_at_ = time_now();
+    flight_.say("waiting: the vehicle is " + std::string(feed_.is_armed() ? "" : "not ") +
+                "armed, in the mode " + feed_.mode_name() + feed_.quoted_text());
   }
 }
 
 void LinkedVehicle::await_words() {
   constexpr Time kWordsFollow{300};
   for (const Time end = time_now() + kWordsFollow; time_now() < end && !stop_.stop_requested();) {
-    feed_.next(kFeedSlice);
+    feed_.next(kReceiveSlice);
   }
 }
 
@@ -223,7 +283,7 @@ FlownTo LinkedVehicle::go(RouteAhead& route, const State& from, const State& com
 std::optional<State> LinkedVehicle::next_position() {
   while (!stop_.stop_requested()) {
     expect_in_reach();
-    std::optional<State> state = feed_.next(kFeedSlice);
+    std::optional<State> state = feed_.next(kReceiveSlice);
     if (is_flying_ && feed_.mode() == FlightMode::mission && !hands_back_) {
       flown_item_ = std::max(flown_item_, feed_.current_item().value_or(0) - number_of(0));
     }
@@ -262,6 +322,11 @@ void LinkedVehicle::give_up(const std::string& why) {
     guardian_->stand_down();
   }
   throw VehicleLost(why);
+}
+
+void LinkedVehicle::give_up_in_hold(const std::string& why) {
+  hold(link_, feed_.vehicle());
+  give_up(why);
 }
 
 Counters LinkedVehicle::counters() const {

@@ -50,6 +50,8 @@ class LinkedVehicle final : public host::FlownVehicle {
   /// False where the mode is nobody's that this flight has asked for.
   bool is_in_own_mode() const;
   [[noreturn]] void give_up(const std::string& why);
+  /// The same after a change that was asked for and may come yet: the vehicle is told to hold.
+  [[noreturn]] void give_up_in_hold(const std::string& why);
 
   // The begin of the mission.
   void await_position();
@@ -57,8 +59,16 @@ class LinkedVehicle final : public host::FlownVehicle {
   void start_mission();
   /// Autopilots turn to the second item before they are at the first.
   void await_nearest(const Vec3& start);
-  /// Sends until it is acknowledged; gives up where it is refused.
-  void expect_done(const CommandLong& command, const std::string& what);
+  /// Asks again until the vehicle reports that its mission begins with the first item.
+  void begin_at_first_item();
+  /// Sends until `is_done`; gives up where it is refused, or not done in time.
+  void expect(const CommandLong& command, const std::string& what,
+              const std::function<bool()>& is_done);
+  void change_mode(FlightMode mode, const std::string& what);
+  void arm_and_start();
+  /// Before the first item: gives up where a mission that was started does not go on; tells now and
+  /// then what is waited for.
+  void watch_start();
   /// After a refusal: its reason comes as a text of its own, if it comes.
   void await_words();
   /// True once the vehicle flies from the first item to the second.
@@ -87,6 +97,7 @@ class LinkedVehicle final : public host::FlownVehicle {
   bool is_flying_ = false;  ///< its mission
   int flown_item_ = 0;      ///< the last that the autopilot flew to by itself
   std::optional<Time> strange_since_;
+  Time told_at_{0};
 
   std::optional<Guardian> guardian_;
   bool commands_ = false;  ///< the vehicle is in its commanded mode, or is asked to be

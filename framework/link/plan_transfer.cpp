@@ -5,6 +5,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "link/flight_mode.hpp"
+#include "link/vehicle_words.hpp"
+
 namespace altiplan::link {
 namespace {
 
@@ -132,12 +135,15 @@ bool begins_with_home(const Vehicle& vehicle, PlanType type) {
   return vehicle.is_ardupilot() && type == PlanType::mission;
 }
 
-/// ArduPilot leaves every circle when heading for the next item, and does not store that it should.
-void forget_exit_headings(std::vector<MissionItemInt>& items) {
+/// What the autopilot does not store: ArduPilot leaves every circle when heading for the next item,
+/// and PX4's take-off has no pitch.
+void forget_unstored(std::vector<MissionItemInt>& items, const Vehicle& vehicle) {
   for (MissionItemInt& item : items) {
-    if (item.command == host::Command::kLoiterTurns) {
+    if (vehicle.is_ardupilot() && item.command == host::Command::kLoiterTurns) {
       item.param2 = 0;
-    } else if (item.command == host::Command::kLoiterToAltitude) {
+    } else if (vehicle.is_ardupilot() && item.command == host::Command::kLoiterToAltitude) {
+      item.param1 = 0;
+    } else if (vehicle.is_px4() && item.command == host::Command::kTakeoff) {
       item.param1 = 0;
     }
   }
@@ -182,19 +188,54 @@ std::vector<std::string> upload(Link& link, const Vehicle& vehicle, const host::
   if (has_home) {
     sent.insert(sent.begin(), home_item(plan));
   }
+  if (type == PlanType::mission && !sent.empty()) {
+    sent.front().current = 1;  // else PX4 begins at the number at which the old mission was
+  }
   if (sent.size() > 0xffff) {
     throw LinkError("MAVLink numbers at most 65535 items: drop waypoints with --max-items");
   }
+  link.forget_warning();
   MissionUpload transfer(type, link.self(), vehicle.address, sent);
   run(link, transfer, stop);
   const std::vector<MissionItemInt> held = downloaded(link, vehicle, type, stop);
   if (has_home && !held.empty()) {
     sent.front() = held.front();
   }
-  if (vehicle.is_ardupilot()) {
-    forget_exit_headings(sent);
-  }
+  forget_unstored(sent, vehicle);
   return differences(sent, held);
+}
+
+StoredMission stored_mission(Link& link, const Vehicle& vehicle, const std::stop_token& stop) {
+  // PX4 checks a mission after it has acknowledged it.
+  const Time checked(vehicle.is_px4() ? 1500 : 0);
+  constexpr Time kTimeout{6000};
+  constexpr Time kAskAgain{500};
+  constexpr std::uint8_t kNoMission = 1;  // MISSION_STATE
+  StoredMission stored;
+  const Time began = time_now();
+  Time ask_at = began;
+  bool is_armed = (vehicle.heartbeat.base_mode & kArmedFlag) != 0;
+  const auto is_first = [&] { return is_armed || stored.current == first_item(vehicle); };
+  while (time_now() < began + kTimeout && !stop.stop_requested() &&
+         !(is_first() && time_now() >= began + checked)) {
+    if (!is_first() && time_now() >= ask_at) {
+      link.send(Message(set_current(vehicle, first_item(vehicle))));
+      ask_at = time_now() + kAskAgain;
+    }
+    const std::optional<Packet> packet = link.receive(kReceiveSlice);
+    if (!packet || !(packet->sender == vehicle.address)) {
+      continue;
+    }
+    if (const auto* current = std::get_if<MissionCurrent>(&packet->message)) {
+      stored.current = current->seq;
+      stored.is_refused = current->mission_state == kNoMission;
+    } else if (const auto* heartbeat = std::get_if<Heartbeat>(&packet->message)) {
+      is_armed = (heartbeat->base_mode & kArmedFlag) != 0;
+    }
+  }
+  stored.begins_elsewhere = !is_first();
+  stored.words = link.warning();
+  return stored;
 }
 
 void download(Link& link, const Vehicle& vehicle, PlanType type, host::Plan& plan,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -28,6 +29,18 @@ std::vector<std::string> differences(const std::vector<MissionItemInt>& sent,
 /// ArduPilot a mission begins with home, which it may replace by its own. Throws LinkError.
 std::vector<std::string> upload(Link& link, const Vehicle& vehicle, const host::Plan& plan,
                                 PlanType type, const std::stop_token& stop);
+
+/// What a vehicle makes of the mission that it has just stored.
+struct StoredMission {
+  std::optional<int> current;     ///< item with which it begins; none: it does not say
+  bool begins_elsewhere = false;  ///< than at the first item, though it was asked to
+  bool is_refused = false;        ///< it declares the mission invalid
+  std::string words;              ///< its last warning since, "" for none
+};
+
+/// Waits until the vehicle has checked its mission and, unless it is armed, will begin with the
+/// first item; asks it to.
+StoredMission stored_mission(Link& link, const Vehicle& vehicle, const std::stop_token& stop);
 
 /// Adds the items of this type, and the home of ArduPilot, to the plan. Throws LinkError.
 void download(Link& link, const Vehicle& vehicle, PlanType type, host::Plan& plan,

@@ -27,22 +27,14 @@ void VehicleFeed::take(const Message& message) {
   } else if (const auto* reached = std::get_if<MissionItemReached>(&message)) {
     reached_item_ = reached->seq;
   } else if (const auto* ack = std::get_if<CommandAck>(&message)) {
-    take(*ack);
+    constexpr int kInProgress = 5;
+    if (ack->result != kInProgress) {
+      results_[ack->command] = ack->result;
+    }
   } else if (const auto* text = std::get_if<Statustext>(&message)) {
-    text_ = text_of(text->text);
+    text_ = texts_.joined(*text);
   } else if (const auto* request = std::get_if<TerrainRequest>(&message)) {
     link_.send(terrain_answer(*request, world_));
-  }
-}
-
-void VehicleFeed::take(const CommandAck& ack) {
-  constexpr int kAccepted = 0;
-  constexpr int kInProgress = 5;
-  if (ack.result != kInProgress) {
-    results_[ack.command] = ack.result;
-  }
-  if (ack.command == VehicleCommand::kSetMode && ack.result == kAccepted) {
-    mode_ = asked_;  // heartbeats come later
   }
 }
 
@@ -84,16 +76,7 @@ std::optional<int> VehicleFeed::acknowledged(std::uint16_t command) const {
 }
 
 void VehicleFeed::set_item(int item) {
-  MissionSetCurrent set;
-  set.target_system = vehicle_.address.system;
-  set.target_component = vehicle_.address.component;
-  set.seq = static_cast<std::uint16_t>(item);
   current_item_.reset();
-  link_.send(Message(set));
-}
-
-CommandLong VehicleFeed::request(FlightMode mode) {
-  asked_ = mode;
-  return mode_command(vehicle_, mode);
+  link_.send(Message(set_current(vehicle_, item)));
 }
 }  // namespace altiplan::link

@@ -7,6 +7,7 @@
 
 #include "altiplan/request.hpp"
 #include "link/flight_mode.hpp"
+#include "link/status_text.hpp"
 
 namespace altiplan::link {
 
@@ -26,6 +27,7 @@ class VehicleFeed {
   State begin_track(double time_s);
 
   const Vehicle& vehicle() const { return vehicle_; }
+  /// By its last heartbeat: PX4's acknowledgement of a change says nothing.
   FlightMode mode() const { return mode_; }
   std::string mode_name() const;
   bool is_armed() const;
@@ -46,22 +48,19 @@ class VehicleFeed {
   std::optional<int> acknowledged(std::uint16_t command) const;
   /// Sends MISSION_SET_CURRENT; current_item() is unknown until the vehicle reports it again.
   void set_item(int item);
-  /// The command for a mode; mode() is that one as soon as the vehicle accepts it.
-  CommandLong request(FlightMode mode);
 
  private:
   void take(const Message& message);
-  void take(const CommandAck& ack);
   std::optional<State> take(const GlobalPositionInt& position);
 
   Link& link_;
   Vehicle vehicle_;
   const World& world_;
   FlightMode mode_ = FlightMode::other;
-  FlightMode asked_ = FlightMode::other;
   std::optional<int> current_item_;
   std::optional<int> reached_item_;
   std::map<std::uint16_t, int> results_;  ///< by command
+  StatusText texts_;
   std::string text_;
   Clock::time_point last_position_;
   std::optional<std::uint32_t> boot_ms_;  ///< of the last position

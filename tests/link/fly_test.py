@@ -56,6 +56,38 @@ class Fly(FlownCase):
                     self.assertEqual(modes[modes.index("AUTO"):][:3], ["AUTO", "GUIDED", "AUTO"])
                     self.assertGreater(flight["min_separation_m"], 5)
 
+    def test_px4_begins_at_the_first_item_after_half_a_flight(self):
+        """It keeps the number of the old mission's item unless the new one says otherwise."""
+        vehicle = self.vehicle("--autopilot", "px4", "--faults", '[{"fault": "lose", "direction": "in",'
+                               ' "message": "MISSION_SET_CURRENT", "count": 2}]')
+        result = self.planned(pilot="route")
+        process = self.flying(result, vehicle, *TAKEOFF, "--land", "--arm")
+        self.assertTrue(vehicle.wait(lambda: vehicle.log("reached"), 60))
+        process.send_signal(signal.SIGINT)
+        process.wait(30)
+        code, out, err = self.altiplan("upload", result, "--to", vehicle.address, *TAKEOFF, "--land")
+        self.assertEqual(code, 0, out + err)
+        self.assertEqual([entry["current"] for entry in vehicle.log("plan")], [0, 0])
+
+    def test_a_mode_is_believed_when_the_vehicle_reports_it(self):
+        """PX4's receiver accepts each; without set-points OFFBOARD is refused afterwards."""
+        faults = ('[{"fault": "lose", "direction": "in", "count": 8, "message":'
+                  ' ["SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED"]}]')
+        vehicle = self.vehicle("--autopilot", "px4", "--faults", faults)
+        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, "--arm", "--command", *TAKEOFF)
+        self.expect_flown(code, flight, out)
+        self.assertIn("GUIDED", vehicle.modes())
+        self.assertGreater(flight["min_separation_m"], 5)
+
+    def test_a_mission_that_is_refused_after_its_acknowledgement(self):
+        faults = '[{"fault": "change", "infeasible": "Landing pattern required"}]'
+        vehicle = self.vehicle("--autopilot", "px4", "--faults", faults)
+        code, out, err = self.altiplan("fly", self.planned(), "--link", vehicle.address, "-o",
+                                       self.path("flown.json"), "--arm", *TAKEOFF)
+        self.assertEqual(code, 1, out + err)
+        self.assertIn("declares it invalid (\"Mission rejected: Landing pattern required\")", out + err)
+        self.assertEqual(vehicle.log("armed"), [])
+
     def test_without_command_a_danger_is_only_noted(self):
         vehicle = self.vehicle("--autopilot", "ardupilot")
         code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm")

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "altiplan/error.hpp"
@@ -48,6 +49,23 @@ TEST(LinkPlanTransfer, WhatIsEqual) {
   held[1].x += 1;
   held[2].z += 0.009F;
   EXPECT_EQ(differences(sent, held), std::vector<std::string>());
+}
+
+TEST(LinkStatusText, PiecesAreJoined) {
+  const auto piece = [](const std::string& words, std::uint16_t id, std::uint8_t number) {
+    Statustext text;
+    std::copy(words.begin(), words.end(), text.text.begin());
+    text.id = id;
+    text.chunk_seq = number;
+    return text;
+  };
+  StatusText texts;
+  EXPECT_EQ(texts.joined(piece("Mission rejected:\t", 0, 0)), "Mission rejected:");
+  EXPECT_EQ(texts.joined(piece("Preflight Fail: the longest of all sentences that ", 7, 0)),
+            "Preflight Fail: the longest of all sentences that");
+  EXPECT_EQ(texts.joined(piece("go on\t", 7, 1)),
+            "Preflight Fail: the longest of all sentences that go on");
+  EXPECT_EQ(texts.joined(piece("another", 8, 0)), "another");
 }
 
 /// ArduPilot gives a landing a direction of its yaw, and cuts off the centimetres of a float.

@@ -32,8 +32,25 @@ host::Plan plan_to_upload(const host::Exported& written) {
   return host::plan_of(written.mission);
 }
 
+/// Prints what the vehicle has against the mission that it stores; true if nothing.
+bool accepts_mission(Connection& connection) {
+  const link::StoredMission stored =
+      link::stored_mission(connection.link, connection.vehicle, connection.stop);
+  const std::string words = stored.words.empty() ? "" : " (\"" + stored.words + "\")";
+  if (stored.is_refused) {
+    std::cout << "mission: the vehicle declares it invalid" << words << '\n';
+  } else if (stored.begins_elsewhere && stored.current) {
+    std::cout << "mission: the vehicle would begin at its item " << *stored.current
+              << ", not at the first" << words << '\n';
+  } else if (!words.empty()) {
+    std::cout << "mission: the vehicle says" << words << '\n';
+  }
+  return !stored.is_refused && !(stored.begins_elsewhere && stored.current);
+}
+
 bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence) {
-  bool is_equal = upload(connection, plan, link::PlanType::mission, plan.items.size());
+  bool is_equal = upload(connection, plan, link::PlanType::mission, plan.items.size()) &&
+                  accepts_mission(connection);
   if (!plan.fence.empty() && with_fence) {
     is_equal = upload(connection, plan, link::PlanType::fence, plan.fence.size()) && is_equal;
   }

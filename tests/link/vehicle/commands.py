@@ -35,11 +35,16 @@ class Commands:
             result = Result.UNSUPPORTED
         else:
             result = handler(message)
-        self.node.send("COMMAND_ACK", {
-            "command": number, "result": int(result), "target_system": message.system,
-            "target_component": message.component})
+        if self.flavour.name == "px4" and number == Command.DO_SET_MODE:
+            self.acknowledge(message, Result.ACCEPTED)  # the receiver; the commander's answer follows
+        self.acknowledge(message, result)
         if number == Command.PREFLIGHT_REBOOT_SHUTDOWN and result == Result.ACCEPTED:
             self.node.reboot(2.0, False)
+
+    def acknowledge(self, message, result):
+        self.node.send("COMMAND_ACK", {
+            "command": message.command, "result": int(result), "target_system": message.system,
+            "target_component": message.component})
 
     def wants_int(self, number):
         return self.flavour.name == "ardupilot" and number in LONG_ONLY_INT

@@ -7,7 +7,8 @@
                reboot: sequence numbers and transfers are lost, plans only if `loses_plans`;
                silent for `seconds` (2)
                change: of stored items: `round_altitude` (m), `shift_lat` (degrees),
-               `drop_command`, `refuse_frame`
+               `drop_command`, `refuse_frame`; of a mission that was acknowledged: `infeasible`,
+               the reason for which it is declared invalid
   direction    in (to the vehicle) | out | both (of packets: both, else in)
   message      a name or a list of names; none: any
   kind         only messages of this mission_type; `seq`: only of this item
@@ -29,7 +30,7 @@ from constants import MissionResult
 PACKET_FAULTS = ("lose", "double", "delay", "reorder", "damage")
 KEYS = {"fault", "direction", "message", "kind", "seq", "from", "until", "skip", "count",
         "probability", "seconds", "result", "loses_plans", "round_altitude", "shift_lat",
-        "drop_command", "refuse_frame"}
+        "drop_command", "refuse_frame", "infeasible"}
 HELD_AT_MOST = 0.5  # s, of a packet that waits to be overtaken
 
 
@@ -197,6 +198,11 @@ class Faults:
 
     def refuses(self, item):
         return any(change.get("refuse_frame") == item.frame for change in self.changes())
+
+    def infeasible(self):
+        """Why a whole mission is invalid, or None."""
+        return next((rule.declared["infeasible"] for rule in self.of_fault("change")
+                     if "infeasible" in rule.declared), None)
 
     def drops(self, item):
         return any(change.get("drop_command") == item.command for change in self.changes())

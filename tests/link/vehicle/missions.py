@@ -20,6 +20,7 @@ class Upload:
     requested_at: float
     received_at: float
     items: list  # as they came; of a partial upload with those before
+    names_current: bool = False  # item 0 is marked as the current one
 
 
 class Missions:
@@ -133,6 +134,7 @@ class Missions:
         elif message.seq != upload.expected:
             self.item_out_of_order(sender, kind)
         else:
+            upload.names_current |= message.seq == 0 and message.current == 1
             self.store(plans.of_message(message), sender)
 
     def item_without_upload(self, message, sender, kind):
@@ -185,19 +187,23 @@ class Missions:
     def finish(self, sender, kind, items):
         """The whole plan is there: it is checked as one and replaces the old plan."""
         last = self.upload.last if self.upload else -1
+        # PX4 keeps the index of the old mission unless an item of the new one is marked.
+        keeps_index = self.flavour.name == "px4" and self.upload and not self.upload.names_current
         self.upload = None
         result = plans.refusal_of_whole(items, kind)
         if result == MissionResult.ACCEPTED:
             self.plans[kind] = [item for item in items if not self.node.faults.drops(item)]
             self.node.log("stored", kind=kind, items=[plans.listed(each)
                                                       for each in self.plans[kind]])
-            self.pilot.plan_changed(kind)
+            self.pilot.plan_changed(kind, keeps_index)
             if self.flavour.name == "ardupilot" and kind == MISSION:
                 self.node.text(Severity.INFO, "Flight plan received")
         elif self.flavour.name == "ardupilot":
             result = MissionResult.ERROR
         self.acknowledged = (sender, kind, last, result)
         self.acknowledge(sender, kind, result)
+        if kind == MISSION and self.node.faults.infeasible():
+            self.node.text(Severity.CRITICAL, f"Mission rejected: {self.node.faults.infeasible()}\t")
 
     def on_mission_ack(self, message, sender, kind):
         upload = self.upload

@@ -95,6 +95,8 @@ class Node:
         self.set_current(message.seq)
 
     def set_current(self, index):
+        if self.pilot.flavour.name == "px4" and self.missions.upload is not None:
+            return False  # ignored while a transfer is open
         if not self.pilot.auto.set_current(index):
             if self.pilot.flavour.name != "ardupilot":
                 self.text(Severity.ERROR, f"Mission has no item {index}")

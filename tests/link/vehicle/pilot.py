@@ -57,6 +57,7 @@ class Pilot:
         self.node.text(severity, text)
 
     def reached(self, index):
+        self.node.log("reached", item=index)
         self.node.send("MISSION_ITEM_REACHED", {"seq": index})
 
     def current_changed(self):
@@ -71,15 +72,17 @@ class Pilot:
         elif speed == -2:
             self.body.speed = None
 
-    def plan_changed(self, kind):
+    def plan_changed(self, kind, keeps_index=False):
         if kind != MISSION:
             return
-        self.node.log("plan", items=len(self.mission_items()))
         auto = self.auto
-        if self.flavour.name != "ardupilot" or auto.current() >= len(self.mission_items()):
+        if keeps_index and auto.set_current(auto.current()):
+            pass  # PX4 begins where the old mission was
+        elif self.flavour.name != "ardupilot" or auto.current() >= len(self.mission_items()):
             auto.restart()
         elif self.mission_runs() and self.kind == "copter":
             auto.resume()  # the same item of the new plan; a plane completes the old one
+        self.node.log("plan", items=len(self.mission_items()), current=self.current_item())
         self.current_changed()
 
     # Arming and modes.
@@ -140,6 +143,8 @@ class Pilot:
         items = self.mission_items()
         if len(items) <= self.auto.first():
             return "no mission"
+        if self.node.faults.infeasible():
+            return self.node.faults.infeasible()
         grounded = self.armed and self.body.on_ground
         if self.kind == "copter" and self.flavour.name == "ardupilot" and grounded:
             commands = [item.command for item in items[1:]]

@@ -188,7 +188,7 @@ class Telemetry:
 
     def mission_state(self):
         pilot = self.node.pilot
-        if len(pilot.mission_items()) <= pilot.auto.first():
+        if len(pilot.mission_items()) <= pilot.auto.first() or self.node.faults.infeasible():
             return "none"
         if pilot.auto.finished:
             return "complete"

@@ -318,14 +318,16 @@ class Arming(Flight):
 class Uploads(Flight):
     MISSION = [HOME_ITEM, takeoff(10), at(60, 0, 10), at(60, 60, 10), at(0, 60, 10)]
 
-    def test_ardupilot_goes_on_at_the_item_whatever_is_uploaded(self):
-        """Until the mission is begun again, or the vehicle disarms."""
-        for flavour, item in (("ardupilot", 3), ("px4", 0)):
+    def test_the_item_stays_whatever_is_uploaded(self):
+        """Until the mission is begun again, or the vehicle disarms; to PX4 until an item is marked
+        as the current one."""
+        marked = [{**self.MISSION[0], "current": 1}, *self.MISSION[1:]]
+        for flavour, items, item in (("ardupilot", marked, 3), ("px4", self.MISSION, 3), ("px4", marked, 0)):
             self.fly(f"--autopilot {flavour}", self.MISSION)
             self.begin()
             self.assertTrue(self.station.run(60, lambda: self.pilot.auto.current() == 3))
             self.assertEqual(self.station.set_mode(HOLD), 0)
-            self.assertEqual(self.station.upload(self.MISSION), 0)
+            self.assertEqual(self.station.upload(items), 0)
             self.assertEqual(self.pilot.current_item(), item)
         self.assertEqual(self.station.command(Command.MISSION_START, 1, 0), 0)
         self.fly("--autopilot ardupilot", self.MISSION)
