@@ -170,7 +170,7 @@ class RoguePlanner final : public Planner {
     } else if (does_ == "huge") {
       route.insert(route.begin() + 1, Vec3(1e300, -1e300, 0));
     } else if (does_ == "million" || does_ == "thousands") {
-      route.insert(route.begin() + 1, does_ == "million" ? 100000 : 50000, Vec3(500, 500, 500));
+      route.insert(route.begin() + 1, does_ == "million" ? 100000 : 10000, Vec3(500, 500, 500));
     } else if (does_ == "wrong_level") {
       route.insert(route.begin() + 1, Vec3(500, 500, 600));
     } else if (does_ == "sharp") {

@@ -51,8 +51,8 @@ def sound_part(store, expected):
 def disk_of_the_store_fills_up(study, folder, expected):
     disk = os.path.join(folder, "small")
     store = os.path.join(disk, "study.db")
-    for leave_kb, jobs in ((0, 2), (64, 2), (1000, 1), (10000, 2)):  # one after the other: some are stored
-        mount(disk, "size=200m")
+    for leave_kb, jobs in ((0, 2), (64, 2), (200, 1), (2000, 2)):  # one after the other: some are stored
+        mount(disk, "size=40m")
         fill(disk, leave_kb << 10)
         process = study.start(store, "--jobs", jobs)
         said = process.communicate(timeout=280)[0].decode(errors="replace")
@@ -74,7 +74,7 @@ def disk_of_the_store_fills_up(study, folder, expected):
 def disk_of_the_work_folder_fills_up(study, folder, expected):
     for reuse in (1, 8):
         store = os.path.join(folder, "work%d.db" % reuse)
-        mount(store + ".work", "size=256k")
+        mount(store + ".work", "size=64k")
         said = study.run(store, "--reuse", reuse, code=3)
         expect(said, store + ".work", "cannot be written", "No space left on device")
         there = sound_part(store, expected)
@@ -88,7 +88,7 @@ def disk_of_the_work_folder_fills_up(study, folder, expected):
 def folder_is_read_only(study, folder, expected):
     disk = os.path.join(folder, "fixed")
     store = os.path.join(disk, "study.db")
-    mount(disk, "size=200m")
+    mount(disk, "size=40m")
     remount(disk, "ro")
     expect(study.run(store, code=3), disk, "cannot write")
     remount(disk, "rw")
@@ -103,7 +103,7 @@ def folder_is_read_only(study, folder, expected):
 
 
 def inside(folder):
-    mount(folder, "size=600m")
+    mount(folder, "size=200m")
     study = Study(PROGRAM, PLUGINS, folder, PIPELINES, MORE)
     study.run(study.path("calm.db"), "--jobs", 2)
     expected = runs(study.path("calm.db"))

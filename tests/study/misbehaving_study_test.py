@@ -16,8 +16,8 @@ import time
 from study_kit import Study, runs
 
 PROGRAM, DOC, PLUGINS = (os.path.abspath(path) for path in sys.argv[1:4])
-# Of each row, by --reuse: where processes are used again, in another order among the others too.
-REPETITIONS = {reuse: int(sys.argv[4]) if len(sys.argv) > 4 else least for reuse, least in ((1, 1), (8, 2))}
+# How often each row is run, by --reuse: where processes are used again, those of one follow those of others.
+REPETITIONS = {reuse: int(sys.argv[4]) if len(sys.argv) > 4 else 1 for reuse in (1, 8)}
 NEIGHBOURS = {
     "straight": "{plan: told}",
     "past": "{plan: told, with: {does: past, past_m: [500, 700, 600]}}",
