@@ -36,6 +36,8 @@ target_compile_options(altiplan_flags INTERFACE
   # Clang has no warning for locals alone.
   $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage>>
   $<BUILD_INTERFACE:$<$<NOT:$<OR:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ALTIPLAN_UNITY}>>>:-Wshadow>>
+  # Looking for garbage to collect below half a gigabyte takes g++ a fifteenth of its time.
+  $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>>
   # g++ 12 warns of std::string's own "text" + string (GCC bug 105651).
   $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>>
   $<BUILD_INTERFACE:$<$<BOOL:${ALTIPLAN_WERROR}>:-Werror>>)
