@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "host/autopilot/flown_mission.hpp"
+#include "support/support.hpp"
 
 namespace altiplan::host::flown_mission_test {
 namespace {
@@ -51,7 +52,7 @@ MissionCommand order(int number, std::array<double, 4> params) {
 }
 
 FlownMission fly(std::vector<MissionCommand> commands, Autopilot autopilot,
-                 const FlightOptions& options = {}) {
+                 const FlightOptions& options = {}, const World& world = flat()) {
   formats::MissionFile plan;
   plan.home = {kLon, kLat, kHome, formats::AltitudeFrame::sea};
   for (std::size_t n = 0; n < commands.size(); ++n) {
@@ -59,7 +60,7 @@ FlownMission fly(std::vector<MissionCommand> commands, Autopilot autopilot,
     commands[n].place = "item " + std::to_string(n + 1);
   }
   plan.commands = std::move(commands);
-  return fly_mission(plan, autopilot, flat(), options);
+  return fly_mission(plan, autopilot, world, options);
 }
 
 const FlownPart& part(const FlownMission& flown, const std::string& what) {
@@ -90,6 +91,26 @@ double distance_to(const FlownMission& flown, double x, double y) {
     }
   }
   return nearest;
+}
+
+/// How far a place at a height above home lies outside of the band.
+double outside(const FlownMission& flown, double x, double y, double height) {
+  double nearest = kInfinity;
+  const Eigen::Vector2d p(x, y);
+  for (const FlownPart& one : flown.parts) {
+    for (const Strip& strip : one.strips) {
+      const Eigen::Vector2d a = strip.from.head<2>();
+      const Eigen::Vector2d along = strip.to.head<2>() - a;
+      const double share =
+          along.norm() > 0 ? std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+      const double low = strip.from.z() + share * (strip.to.z() - strip.from.z());
+      const double high = strip.from_high_m + share * (strip.to_high_m - strip.from_high_m);
+      const double above = std::max({low - kHome - height, kHome + height - high, 0.0});
+      nearest =
+          std::min(nearest, std::hypot((a + share * along - p).norm(), above) - strip.reach_m);
+    }
+  }
+  return std::max(nearest, 0.0);
 }
 
 double highest(const FlownPart& one) {
@@ -244,6 +265,83 @@ TEST(FlownMission, WhatAnAutopilotRefusesIsNotFlown) {
   stops.auto_continue = false;
   EXPECT_EQ(rule_of(stops, kPx4Copter), "never_ends");
   EXPECT_EQ(rule_of(stops, kCopter), "none");
+}
+// Flown in ArduPilot's simulation.
+TEST(FlownMission, ACopterLeavesItsCircleBesideTheBeginning) {
+  MissionCommand circle = command(18, 0, 500, 50);
+  circle.params = {1, 0, 60, 0};
+  const FlownMission flown =
+      fly({command(22, 0, 0, 50), circle, command(16, 900, 500, 50)}, kCopter);
+  // The turn begins at (0, 440): of 8.7 m/s it is left about 19 m before, and stops 17 m on.
+  const double angle = 19 / 60.0;
+  const Eigen::Vector2d left(60 * std::sin(angle), 500 - 60 * std::cos(angle));
+  EXPECT_LT(
+      outside(flown, left.x() + 100, left.y() + 100 * (500 - left.y()) / (900 - left.x()), 50),
+      0.5);
+  // And goes on as long as a delay lasts.
+  const FlownMission later =
+      fly({command(22, 0, 0, 50), circle, order(93, {20, 0, 0, 0}), command(16, 900, 500, 50)},
+          kCopter);
+  EXPECT_LT(outside(later, 450, 530, 50), 0.5);  // from the northern edge
+  EXPECT_GT(outside(flown, 450, 530, 50), 20);
+}
+
+TEST(FlownMission, AnArcThatFollowsNoWaypointMayBeFlownStraight) {
+  MissionCommand arc = command(36, 300, 0, 50);
+  arc.params = {180, 0, 0, 0};
+  const FlownMission first = fly({command(22, 0, 0, 50), arc}, kCopter);
+  EXPECT_LT(outside(first, 150, 0, 50), 0.1);
+  EXPECT_LT(outside(first, 150, 150, 50), 1);
+  const FlownMission second = fly({command(22, 0, 0, 50), command(16, 0, 1, 50), arc}, kCopter);
+  EXPECT_GT(outside(second, 150, 0, 50), 100);
+}
+
+TEST(FlownMission, AReturnAfterANewHomeCountsItsHeightFromEither) {
+  const FlownMission flown = fly({command(22, 0, 0, 60), command(16, 500, 0, 60),
+                                  command(179, 100, 0, kHome - 30, 0), order(20, {0, 0, 0, 0})},
+                                 kCopter);
+  EXPECT_LT(outside(flown, 300, 0, 30), 0.1);  // as high above the new home
+  EXPECT_LT(outside(flown, 300, 0, 60), 0.1);
+}
+
+TEST(FlownMission, ATurnWithoutARadiusIsFlownAtThePresentHeight) {
+  MissionCommand turn = command(18, 100, 0, 90);
+  turn.params = {2, 0, 0, 0};
+  const FlownMission near = fly({command(22, 0, 0, 50), turn, command(16, 200, 0, 50)}, kCopter);
+  EXPECT_GT(outside(near, 100, 0, 90), 30);
+  EXPECT_FALSE(has_rule(near, "not_judged"));
+  turn = command(18, 900, 0, 90);  // it ends on the way, when the yaw has turned
+  turn.params = {2, 0, 0, 0};
+  EXPECT_TRUE(has_rule(fly({command(22, 0, 0, 50), turn}, kCopter), "not_judged"));
+}
+
+/// Level but for one peak, 40 m high.
+class Peak final : public Environment, public Ground {
+ public:
+  static constexpr double kAt = 440;  // metres east of home; between nodes of ArduPilot's grid
+
+ private:
+  static double height_at(double x, double y) {
+    return kHome + 40 * std::max(0.0, 1 - std::hypot(x - kAt, y) / 30);
+  }
+  Box do_bounds() const override { return {{-1e4, -1e4, 0}, {1e4, 1e4, 1000}}; }
+  double do_clearance(const Vec3& p) const override { return p.z() - height_at(p.x(), p.y()); }
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double y) const override { return height_at(x, y); }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(a.z(), b.z()) - kHome - 40;
+  }
+};
+
+TEST(FlownMission, ArduPilotsGroundIsInterpolatedInAGrid) {
+  World world = altiplan::testing::world_of(std::make_shared<Peak>(), "peak");
+  world = world.with_frame(flat().frame());
+  const FlownMission flown =
+      fly({command(22, 0, 0, 60), command(16, 100, 0, 60, 10), command(16, 900, 0, 60, 10)},
+          kCopter, {}, world);
+  EXPECT_LT(outside(flown, Peak::kAt, 0, 61), 0.1);  // does not see the peak
+  EXPECT_LT(outside(flown, Peak::kAt, 0, 95), 5);    // or follows it
+  EXPECT_GT(outside(flown, Peak::kAt, 0, 50), 5);
 }
 }  // namespace
 }  // namespace altiplan::host::flown_mission_test

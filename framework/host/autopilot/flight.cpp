@@ -41,6 +41,51 @@ double Flight::ground(const Eigen::Vector2d& at) const {
   return world_.ground(at.x(), at.y()).value_or(home_ground);
 }
 
+std::array<double, 2> Flight::known_grounds(const Eigen::Vector2d& at) const {
+  const double own = ground(at);
+  if (autopilot().is_px4() || !world_.has_ground() || !world_.frame().has_position()) {
+    return {own, own};
+  }
+  const double most = parameter("TERRAIN_OFS_MAX");
+  const double shift = std::clamp(home_ground - grid_ground(home), -most, most);
+  return {own, grid_ground(at) + shift};
+}
+
+// AP_Terrain::calculate_grid_info and height_amsl: blocks of 24 by 28 cells, counted from whole
+// degrees, in each of which the nodes lie equally far apart in metres.
+double Flight::grid_ground(const Eigen::Vector2d& at) const {
+  constexpr double kMetres = 111318.84502145034;  // a degree
+  constexpr int kNorth = 24;
+  constexpr int kEast = 28;
+  const double spacing = parameter("TERRAIN_SPACING");
+  const auto [lon, lat] = world_.frame().to_lonlat(at.x(), at.y());
+  const auto shrink = [](double a, double b) { return std::cos(radians((a + b) / 2)); };
+  const auto offset = [&](double from_lat, double from_lon, double north, double east) {
+    const double to_lat = from_lat + north * spacing / kMetres;
+    return std::pair(to_lat, from_lon + east * spacing / kMetres / shrink(from_lat, to_lat));
+  };
+  const double lat0 = std::floor(lat);
+  const double lon0 = std::floor(lon);
+  const int row = int((lat - lat0) * kMetres / spacing) / kNorth;
+  const int column = int((lon - lon0) * kMetres * shrink(lat, lat0) / spacing) / kEast;
+  const auto [block_lat, block_lon] = offset(lat0, lon0, row * kNorth, column * kEast);
+  const double north = (lat - block_lat) * kMetres / spacing;
+  const double east = (lon - block_lon) * kMetres * shrink(lat, block_lat) / spacing;
+  const auto node = [&](double n, double e) {
+    const auto key = offset(block_lat, block_lon, std::floor(north) + n, std::floor(east) + e);
+    const auto [found, is_new] = grid_.try_emplace(key, 0);
+    if (is_new) {
+      const auto [x, y] = world_.frame().to_local(key.second, key.first);
+      found->second = ground({x, y});
+    }
+    return found->second;
+  };
+  const double v = north - std::floor(north);
+  const double u = east - std::floor(east);
+  return (node(0, 0) * (1 - v) + node(1, 0) * v) * (1 - u) +
+         (node(0, 1) * (1 - v) + node(1, 1) * v) * u;
+}
+
 void Flight::add_strip(const Vec3& from, double from_high, const Vec3& to, double to_high,
                        double reach) {
   if (repeats < 2) {
@@ -83,12 +128,17 @@ void Flight::add_disc(const Destination& centre, double inner, double outer, dou
         const double r = radius / std::cos(kPi / sides);
         const double angle = 2 * kPi * n / sides;
         const Eigen::Vector2d p = centre.at + r * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-        return Vec3(p.x(), p.y(), centre.above_ground ? ground(p) + *centre.above_ground : low);
+        if (!centre.above_ground) {
+          return std::pair(Vec3(p.x(), p.y(), low), high);
+        }
+        const auto grounds = known_grounds(p);
+        const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+        return std::pair(Vec3(p.x(), p.y(), lowest + *centre.above_ground + low),
+                         highest + *centre.above_ground + high);
       };
-      const Vec3 from = corner(side);
-      const Vec3 to = corner(side + 1);
-      const double rise = centre.above_ground ? 0 : high - low;
-      add_strip(from, from.z() + rise, to, to.z() + rise, kSpacing / 2);
+      const auto [from, from_high] = corner(side);
+      const auto [to, to_high] = corner(side + 1);
+      add_strip(from, from_high, to, to_high, kSpacing / 2);
     }
   }
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,9 @@ class Flight {
 
   /// Ground there, else the height of home.
   double ground(const Eigen::Vector2d& at) const;
+  /// The ground there as an autopilot may know it: that of the world, and ArduPilot's, which it
+  /// interpolates in a grid, and shifts by what this is off at home.
+  std::array<double, 2> known_grounds(const Eigen::Vector2d& at) const;
   /// Adds a strip from one place to another; where `follows`, its heights are above the ground.
   void add_strip(const Vec3& from, double from_high, const Vec3& to, double to_high, double reach);
   /// Adds a whole leg, on any of the lines that autopilots take for straight: these are up to
@@ -46,18 +51,22 @@ class Flight {
   void add_leg(const Vec3& from, double from_high, const Vec3& to, double to_high, double reach);
   /// Adds a vertical motion.
   void add_column(const Eigen::Vector2d& at, double low, double high, double reach);
-  /// Adds a whole disc at heights from `low` to `high`, as circles that lie close.
-  /// or, where a height above the ground is given, at that.
+  /// Adds a whole disc at heights from `low` to `high`, as circles that lie close; where a height
+  /// above the ground is given, from that much below it to that much above.
   void add_disc(const Destination& centre, double inner, double outer, double low, double high);
 
+  Eigen::Vector2d home{0, 0};
   double home_ground = 0;   ///< where the world has no ground
   std::size_t before = 0;   ///< the command whose position was flown to last
   std::size_t repeats = 0;  ///< how often the present leg was flown before
 
  private:
+  double grid_ground(const Eigen::Vector2d& at) const;
+
   FlownMission& mission_;
   const World& world_;
   const Parameters& parameters_;
+  mutable std::map<std::pair<double, double>, double> grid_;  ///< nodes, by degrees
 };
 
 /// A vehicle that hovers, at a place.
@@ -79,17 +88,36 @@ class Hover {
   void circle(std::size_t command, const Destination& centre, double radius, double turns,
               bool clockwise);
   void land(std::size_t command, const char* what);
+  /// While it waits after a circle, which it does not leave.
+  void go_on_circling(double seconds);
 
  private:
   /// Adds the cut corner at the present place.
   void cut_corner(const Eigen::Vector2d& to, double z);
+  /// Where the next way may begin: about the present place, if this is on a circle.
+  std::vector<Eigen::Vector2d> leave_circle();
   void follow_ground(const Destination& to);
+  /// How far below or above it is on a circle above the ground.
+  double lag_on_circle(const Eigen::Vector2d& centre, double radius, double v) const;
   double climb_rate() const;
   double sink_rate() const;
   double reach() const;  ///< acceptance radius of the present place
 
+  /// The circle that is flown, and how far (metres) beyond its beginning it may be left.
+  struct Left {
+    Destination centre;
+    double lag_m;  ///< above the ground
+    double radius;
+    double speed_mps;
+    double begun;  ///< bearing from the centre
+    double from_m;
+    double to_m;
+  };
+
   Flight& flight_;
   std::optional<Vec3> previous_;  ///< where the last leg came from, if it leads on without a stop
+  std::optional<Left> left_;
+
  public:
   double acceptance_m = 0;  ///< of the present place
   bool stops = true;        ///< there
@@ -150,9 +178,20 @@ class Wing {
   void cut_corner(const Leg& leg);
   void make_members(const std::function<Member(int, double)>& make);
   double turn_distance(double v, const Leg& leg) const;
+  /// Where a member was after each step of time.
+  struct Passed {
+    Vec3 at;
+    double high;
+    bool is_settled;  ///< on the track, and along it
+  };
   /// Seconds that the member takes.
-  double fly(Member& member, const Leg& leg);
-  double sought_height(const Leg& leg, const Eigen::Vector2d& at, double share) const;
+  double fly(Member& member, const Leg& leg, std::vector<Passed>& passed);
+  /// Adds what lies between neighbours, of which one turns later or is faster.
+  void fill_between(const std::vector<std::vector<Passed>>& passed);
+  /// The lowest and the highest, of a share of the leg.
+  std::array<double, 2> sought_heights(const Leg& leg, const Eigen::Vector2d& at,
+                                       double share) const;
+  double sought_height(const Leg& leg, double share) const;
   /// ArduPilot climbs at half its rate before the ground rises.
   double highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
                        double left, double v) const;
@@ -160,6 +199,8 @@ class Wing {
   void seek_heights(Member& member, double sought, double highest, double seconds) const;
   void circle_until_high(std::size_t command, const Leg& leg);
   double max_turn_rate(double v) const;
+  /// In metres a second over the ground, of the slowest (0) and the fastest (1).
+  double true_speed(int speed, double z) const;
 
   Flight& flight_;
   std::vector<Member> members_;
@@ -168,6 +209,7 @@ class Wing {
   bool does_arrive_ = true;
   std::optional<Destination> before_;  ///< the item before that, if its track leads there
   double cut_m_ = 0;                   ///< how far before the previous item it may have turned
+  double changing_mps_[2];             ///< the speeds, and those before them
   double climb_mps_;
   double sink_mps_;
   double l1_s_;  ///< distance of guidance a speed

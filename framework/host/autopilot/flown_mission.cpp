@@ -47,6 +47,7 @@ void Walker::place_home() {
     }
     home_z_ = flight_.ground(home_);
   }
+  flight_.home = home_;
   flight_.home_ground = home_z_;
 }
 
@@ -77,7 +78,10 @@ Destination Walker::destination(std::size_t n) const {
                   ": its altitude is above ground, and the world has no ground there");
     }
     to.above_ground = command.altitude_m;
-    to.low = to.high = flight_.ground(to.at) + command.altitude_m;
+    const auto grounds = flight_.known_grounds(to.at);
+    const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+    to.low = lowest + command.altitude_m;
+    to.high = highest + command.altitude_m;
     return to;
   }
   if (!formats::is_of_home(command.frame)) {

@@ -12,7 +12,28 @@ constexpr double kGroundStep = 10;  // metres between heights above the ground
 constexpr double kTerrainMargin =
     10;  // ArduPilot slows down before it is this far off (WP_TER_MARGIN)
 constexpr double kCornerSpacing = 4;  // metres between the chords of a corner
+constexpr double kAtEdge = 3;         // metres within which it is on a circle
 constexpr double kTouchDown = 10;     // metres above the ground from which it sinks slowly
+
+/// The height of the ground as ArduPilot's copter follows it: within its rates, with accelerations
+/// of 1 m/s² (WP_ACC_Z).
+struct LaggingGround {
+  double z;
+  double rate = 0;
+
+  double follow(double ground, double seconds, double sink, double climb) {
+    constexpr double kStep = 0.2;
+    const int steps = int(std::ceil(seconds / kStep));
+    const double dt = seconds / steps;
+    for (int n = 0; n < steps; ++n) {
+      const double wanted = std::clamp(ground - z, -sink, climb);
+      rate += std::clamp(wanted - rate, -dt, dt);
+      z += rate * dt;
+    }
+    z = std::clamp(z, ground - kTerrainMargin, ground + kTerrainMargin);
+    return z;
+  }
+};
 
 Vec3 at_height(const Eigen::Vector2d& at, double z) { return {at.x(), at.y(), z}; }
 }  // namespace
@@ -53,7 +74,9 @@ void Hover::climb(std::size_t command, const char* what, double low_m, double hi
       is_on_ground ? FlownPart::Ground::touched_from_above : FlownPart::Ground::kept_off;
   const double bottom = std::min(low, low_m);
   const double top = std::max(high, high_m);
-  flight_.add_column(at, bottom, top, std::min(reach(), 2.0));
+  for (const Eigen::Vector2d& place : leave_circle()) {
+    flight_.add_column(place, bottom, top, std::min(reach(), 2.0));
+  }
   const double least = std::max({low_m - high, low - high_m, 0.0});
   const double most = std::max(high_m - low, high - low_m);
   const double first =
@@ -91,24 +114,70 @@ void Hover::cut_corner(const Eigen::Vector2d& to, double z) {
   }
 }
 
+// ArduPilot counts the turns of a point that the vehicle is up to 2.2 s behind, turns always
+// clockwise in some versions, and begins the next leg where the vehicle would come to rest.
+std::vector<Eigen::Vector2d> Hover::leave_circle() {
+  constexpr double kSpacing = 3;  // metres
+  if (!left_) {
+    return {at};
+  }
+  const Left& left = *left_;
+  const double stop = left.speed_mps * (left.speed_mps / 5 + 0.4);
+  const double end_m = std::min(left.to_m, left.from_m + 2 * kPi * left.radius);
+  std::vector<Eigen::Vector2d> places;
+  for (const double sense : {-1.0, 1.0}) {
+    for (double along = left.from_m; along < end_m + stop + kSpacing; along += kSpacing) {
+      const double angle = left.begun + sense * std::min(along, end_m) / left.radius;
+      const Eigen::Vector2d out(std::cos(angle), std::sin(angle));
+      const Eigen::Vector2d ahead = sense * Eigen::Vector2d(-out.y(), out.x());
+      const Eigen::Vector2d here =
+          left.centre.at + left.radius * out + std::max(0.0, along - end_m) * ahead;
+      const Eigen::Vector2d rest = here + stop * ahead;
+      places.push_back(here);
+      if (along <= end_m) {
+        flight_.add_strip(at_height(here, low), high, at_height(rest, low), high, kAtEdge);
+        places.push_back(rest);
+      }
+    }
+  }
+  return places;
+}
+
+void Hover::go_on_circling(double seconds) {
+  if (left_) {
+    left_->to_m += seconds * left_->speed_mps;
+  }
+}
+
 void Hover::follow_ground(const Destination& to) {
   const double length = (to.at - at).norm();
   const int steps = std::max(1, int(std::ceil(length / kGroundStep)));
-  const double from_above = low - flight_.ground(at);
-  double z = low;  // with the lag of the fastest flight
+  const std::array<double, 2> begun = flight_.known_grounds(at);
+  const double starts[] = {low, high};
+  LaggingGround lagging[] = {{begun[0]}, {begun[1]}};  // of the fastest flight
   Vec3 before = at_height(at, low);
   double before_high = high;
   for (int n = 1; n <= steps; ++n) {
     const double part = double(n) / steps;
     const Eigen::Vector2d p = at + part * (to.at - at);
-    const double sought = flight_.ground(p) + from_above + part * (*to.above_ground - from_above);
-    const double seconds = length / steps / speed_mps[1];
-    z = std::clamp(sought, z - sink_rate() * seconds, z + climb_rate() * seconds);
-    z = std::clamp(z, sought - kTerrainMargin, sought + kTerrainMargin);
-    const Vec3 here = at_height(p, std::min(z, sought));
-    flight_.add_strip(before, before_high, here, std::max(z, sought), std::min(reach(), 2.0));
+    const std::array<double, 2> grounds = flight_.known_grounds(p);
+    double lowest = kInfinity;
+    double highest = -kInfinity;
+    for (int ground : {0, 1}) {
+      const double z = lagging[ground].follow(grounds[ground], length / steps / speed_mps[1],
+                                              sink_rate(), climb_rate());
+      for (const double start : starts) {
+        const double before_above = start - begun[ground];
+        const double above = before_above + part * (*to.above_ground - before_above);
+        lowest = std::min({lowest, z + above, grounds[ground] + above});
+        highest = std::max({highest, z + above, grounds[ground] + above});
+      }
+    }
+    const Vec3 here = at_height(p, lowest);
+    // ArduPilot's ground is in whole metres.
+    flight_.add_strip(before, before_high, here, highest, std::min(reach(), 2.0) + 1);
     before = here;
-    before_high = std::max(z, sought);
+    before_high = highest;
   }
   low = before.z();
   high = before_high;
@@ -124,15 +193,27 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
   if (!stops && !to.above_ground) {
     cut_corner(to.at, to.low);
   }
-  if (to.above_ground) {
-    follow_ground(to);
-  } else {
-    // PX4 keeps within a metre of its line, ArduPilot within the radius of the blended corners.
-    flight_.add_leg(from, high, at_height(to.at, to.low), to.high,
-                    is_px4 ? 1.0 : std::min(reach(), 10.0));
-    low = to.low;
-    high = to.high;
+  const Hover begun = *this;
+  for (const Eigen::Vector2d& place : leave_circle()) {
+    at = place;
+    low = begun.low;
+    high = begun.high;
+    if (left_ && left_->centre.above_ground) {
+      const auto grounds = flight_.known_grounds(at);
+      low = std::min(grounds[0], grounds[1]) + *left_->centre.above_ground - left_->lag_m;
+      high = std::max(grounds[0], grounds[1]) + *left_->centre.above_ground + left_->lag_m;
+    }
+    if (to.above_ground) {
+      follow_ground(to);
+    } else {
+      // PX4 keeps within a metre of its line, ArduPilot within the radius of the blended corners.
+      flight_.add_leg(at_height(at, low), high, at_height(to.at, to.low), to.high,
+                      is_px4 ? 1.0 : std::min(reach(), 10.0));
+      low = to.low;
+      high = to.high;
+    }
   }
+  left_.reset();
   const double both_ends = is_px4 ? 2.4 : 6.5;  // v / a + a / jerk
   flight_.take({std::max(along / speed_mps[1], std::abs(to.low - from.z()) / climb_rate()) * 0.95,
                 std::max(along / speed_mps[0], vertical) + both_ends});
@@ -170,43 +251,82 @@ void Hover::arc(std::size_t command, const Destination& to, double angle) {
   low = to.low;
   high = to.high;
   previous_.reset();
+  left_.reset();
+}
+
+double Hover::lag_on_circle(const Eigen::Vector2d& centre, double radius, double v) const {
+  constexpr int kSides = 48;
+  double lag = 0;
+  for (const double sense : {-1.0, 1.0}) {
+    LaggingGround lagging[2] = {{0}, {0}};
+    for (int side = 0; side <= 2 * kSides; ++side) {  // the first round brings it into step
+      const double angle = sense * 2 * kPi * side / kSides;
+      const auto grounds = flight_.known_grounds(
+          centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      for (int ground : {0, 1}) {
+        if (side == 0) {
+          lagging[ground].z = grounds[ground];
+        }
+        const double z = lagging[ground].follow(grounds[ground], 2 * kPi * radius / kSides / v,
+                                                sink_rate(), climb_rate());
+        lag = std::max(lag, std::abs(z - grounds[ground]));
+      }
+    }
+  }
+  return lag;
 }
 
 void Hover::circle(std::size_t command, const Destination& centre, double radius, double turns,
                    bool clockwise) {
   constexpr double kAtCentre = 0.5;
-  constexpr double kAtEdge = 3;
   const Eigen::Vector2d off = at - centre.at;
   const bool is_from_centre = off.norm() <= kAtCentre;
   Destination edge = centre;
   if (!is_from_centre) {
     edge.at = centre.at + radius * off.normalized();
-    if ((edge.at - at).norm() > kAtEdge) {
-      stops = true;
-      go(command, "the way to its circle", edge);
-    }
+  }
+  const double rise = std::max(std::abs(edge.high - low), std::abs(high - edge.low));
+  if (std::hypot(is_from_centre ? radius : (edge.at - at).norm(), rise) > kAtEdge) {
+    stops = true;
+    go(command, "the way to its circle", edge);
+  } else {  // it circles at its present height
+    edge.low = low;
+    edge.high = high;
   }
   flight_.begin(command, "its circle");
-  const double bottom = std::min(low, centre.low);
-  const double top = std::max(high, centre.high);
-  flight_.add_disc(centre, is_from_centre ? 0 : radius, radius, bottom, top);
   const double v = std::min({speed_mps[0], std::sqrt(0.5 * 2.5 * radius), radians(20) * radius});
+  const double inner = is_from_centre ? 0 : radius;
+  double lag = 0;
+  if (centre.above_ground) {
+    lag = lag_on_circle(centre.at, radius, v);
+    flight_.add_disc(centre, inner, radius, -lag, lag);
+  } else {
+    flight_.add_disc(centre, inner, radius, std::min(low, edge.low), std::max(high, edge.high));
+  }
   const double seconds = 2 * kPi * radius * turns / v;
   flight_.take({0.9 * seconds, 1.1 * seconds + 15});
   const double begun = std::atan2(off.y(), off.x());
   const double left = begun - (clockwise ? 1 : -1) * 2 * kPi * turns;
   at = centre.at + radius * Eigen::Vector2d(std::cos(left), std::sin(left));
-  low = centre.low;
-  high = centre.high;
+  low = edge.low;
+  high = edge.high;
   previous_.reset();
   stops = true;
+  const double beyond = 2 * kPi * radius * (turns - std::floor(turns));
+  left_ = Left{centre, lag, radius, v, begun, beyond - 2.5 * v, beyond - v};
+  if (is_from_centre) {
+    left_->to_m += 2 * kPi * radius;
+  }
 }
 
 void Hover::land(std::size_t command, const char* what) {
   FlownPart& part = flight_.begin(command, what);
   part.ground = FlownPart::Ground::touched_from_above;
   const double foot = std::min(low, flight_.ground(at));
-  flight_.add_column(at, foot, high, std::min(reach(), 2.0));
+  for (const Eigen::Vector2d& place : leave_circle()) {
+    flight_.add_column(place, std::min(foot, flight_.ground(place)), high, std::min(reach(), 2.0));
+  }
+  left_.reset();
   const double height = high - foot;
   const double last = std::min(height, kTouchDown);
   const bool is_px4 = flight_.autopilot().is_px4();

@@ -33,8 +33,15 @@ bool Walker::fly_hover(std::size_t n) {
     return true;
   }
   if (task == Task::loiter_turns && is_copter && command.params[2] == 0) {
-    to.low = std::min(to.low, hover_->low);  // turns in yaw at the centre, its height unchanged
-    to.high = std::max(to.high, hover_->high);
+    // It turns in yaw at 20 degrees a second on its way to the centre, its height unchanged.
+    const double reached = 0.7 * hover_->speed_mps[0] * 18 * command.params[0];
+    if (to.above_ground || (to.at - hover_->at).norm() > reached) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "turns without a radius are judged near the place before, at a height that "
+                     "does not follow the ground, alone");
+    }
+    to.low = hover_->low;
+    to.high = hover_->high;
     to.above_ground.reset();
   } else if (task == Task::loiter_turns) {
     const double radius = std::min(std::abs(command.params[2]), 2000.0);
@@ -50,7 +57,14 @@ bool Walker::fly_hover(std::size_t n) {
     const double angle = radians(command.params[0]);
     const double radius = (to.at - hover_->at).norm() / (2 * std::sin(std::abs(angle) / 2));
     if (!to.above_ground && std::abs(angle) < 2 * kPi && radius > 0 && radius <= kMaxRadius) {
+      TimeSpan begun = mission_.time;
+      // Some versions know of an arc from a waypoint before it alone, of the same kind of height.
+      if (hover_->stops || formats::is_above_ground(commands_[flight_.before].frame)) {
+        Hover(*hover_).go(n, "", to);
+        std::swap(mission_.time, begun);
+      }
       hover_->arc(n, to, angle);
+      hover_->stops = false;
       return false;
     }
     flight_.remark(
@@ -154,6 +168,13 @@ bool Walker::circle_wing(std::size_t n, const Destination& to) {
   if (is_px4() && task == Task::loiter_to_altitude) {
     leg.to.low = leg.to.high = wing_->low();  // level to the circle
     leg.at_once = true;
+  }
+  const bool follows_circle = task_of(flight_.before) == Task::loiter_turns ||
+                              task_of(flight_.before) == Task::loiter_time ||
+                              task_of(flight_.before) == Task::loiter_to_altitude;
+  if (follows_circle && !is_px4()) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "some versions take a circle after a circle for reached, and leave it at once");
   }
   wing_->go(n, "", leg);
   const double turns = task == Task::loiter_turns ? command.params[0] : 0;

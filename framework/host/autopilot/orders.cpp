@@ -24,6 +24,7 @@ bool Walker::delay(std::size_t n) {
   constexpr double kDay = 86400;
   flight_.take(seconds > 0 ? TimeSpan{seconds, seconds} : TimeSpan{0, kDay});
   if (hover_) {
+    hover_->go_on_circling(seconds > 0 ? seconds : kDay);
     hover_->stops = true;
   }
   return false;

@@ -89,27 +89,35 @@ std::vector<Walker::Refuge> Walker::refuges() const {
 
 void Walker::return_hover(std::size_t n, const Refuge& refuge) {
   const double distance = (refuge.at - hover_->at).norm();
-  double target = 0;
-  if (is_px4()) {
-    target = std::max(hover_->high, home_z_ + parameter("RTL_RETURN_ALT"));
-  } else if (autopilot_.is_copter()) {
-    const double present = hover_->high - home_z_;
+  const auto target = [&](double z) {
+    if (is_px4()) {
+      return std::max(z, home_z_ + parameter("RTL_RETURN_ALT"));
+    }
+    if (!autopilot_.is_copter()) {
+      return std::max(z, home_z_ + 15);
+    }
+    const double present = z - home_z_;
     double height = std::max({present + parameter("RTL_CLIMB_MIN_M"), parameter("RTL_ALT_M"),
                               refuge.height_m.value_or(0)});
     const double cone = parameter("RTL_CONE_SLOPE");
     if (cone >= 0.5) {
       height = std::min(height, std::max(cone * distance, present));
     }
-    if (parameter("RTL_ALT_TYPE") != 0) {
-      flight_.remark(Weight::not_judged, "not_judged", n,
-                     "a return at a height above the ground (RTL_ALT_TYPE) is not judged");
-    }
-    target = home_z_ + std::max(height, 0.3);
-  } else {
-    target = std::max(hover_->high, home_z_ + 15);
+    return home_z_ + std::max(height, 0.3);
+  };
+  if (!is_px4() && autopilot_.is_copter() && parameter("RTL_ALT_TYPE") != 0) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "a return at a height above the ground (RTL_ALT_TYPE) is not judged");
   }
-  if (target > hover_->low) {
-    hover_->climb(n, "the climb of its return", target, std::max(target, hover_->high));
+  double lowest = target(hover_->low);
+  double highest = target(hover_->high);
+  if (former_home_z_) {  // its height above the former home may count
+    const double shift = home_z_ - *former_home_z_;
+    lowest = std::min(lowest, target(hover_->low + shift));
+    highest = std::max(highest, target(hover_->high + shift));
+  }
+  if (lowest != hover_->low || highest != hover_->high) {
+    hover_->climb(n, "the climb of its return", lowest, highest);
   }
   Destination home;
   home.at = refuge.at;

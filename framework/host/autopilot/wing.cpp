@@ -11,11 +11,12 @@ namespace altiplan::host {
 namespace {
 
 constexpr double kGravity = 9.80665;
-constexpr double kTimeStep = 0.4;  // seconds
-constexpr double kLevel = 0.05;    // metres
-constexpr double kOnTrack = 1;     // metres: the reach of the track itself
-constexpr double kReach = 5;       // metres: half of what lies between two members at a corner
-constexpr int kFractions = 9;      // of the distance at which a turn begins
+constexpr double kTimeStep = 0.4;        // seconds
+constexpr double kLevel = 0.05;          // metres
+constexpr double kOnTrack = 1;           // metres: the reach of the track itself
+constexpr double kBesideTrack = 3;       // metres that are kept within
+constexpr double kReach = 5;             // metres: half of a step of time
+constexpr int kFractions = 5;            // of the distance at which a turn begins
 constexpr double kPx4HeightRadius = 10;  // NAV_FW_ALT_RAD
 constexpr double kPx4LevelBefore = 80;   // metres before an item at which its ramp has ended
 constexpr double kRunOut = 200;          // metres beyond a landing's point
@@ -24,6 +25,20 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 Eigen::Vector2d unit(double heading) { return {std::cos(heading), std::sin(heading)}; }
+/// True airspeed an indicated one, in the standard atmosphere. Autopilots that measure a warm or a
+/// cold sensor are some percent off.
+double air_ratio(double z) {
+  return std::pow(1 - 2.25577e-5 * std::clamp(z, -500.0, 9000.0), -2.128);
+}
+constexpr double kLevelsOff = 15;    // metres above a take-off's height
+constexpr double kAboveGround = 10;  // metres that a height above the ground is kept within
+constexpr double kSwings = 1.4;      // how far it swings out when it joins a circle
+constexpr double kEitherWay = 2.5;   // radians to turn, beyond which it turns left or right
+constexpr double kQuick = 1.15;      // rates of climb and sink, of those that are sought
+constexpr double kSlow = 0.85;
+constexpr double kColdest = 0.97;
+constexpr double kWarmest = 1.08;
+constexpr double kWeakest = 0.72;  // the turn that is flown, of what the greatest bank would give
 double bearing_of(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
 }  // namespace
 
@@ -38,6 +53,9 @@ Wing::Wing(Flight& flight) : flight_(flight) {
 }
 
 void Wing::set_speed(double slowest, double fastest) {
+  // On its next leg it may still be as fast as before.
+  changing_mps_[0] = is_flying() ? std::min(changing_mps_[0], slowest) : slowest;
+  changing_mps_[1] = is_flying() ? std::max(changing_mps_[1], fastest) : fastest;
   speed_mps[0] = slowest;
   speed_mps[1] = fastest;
 }
@@ -50,8 +68,7 @@ double Wing::max_turn_rate(double v) const {
 
 void Wing::make_members(const std::function<Member(int, double)>& make) {
   members_.clear();
-  const int speeds = speed_mps[0] < speed_mps[1] ? 2 : 1;
-  for (int speed = 2 - speeds; speed < 2; ++speed) {
+  for (int speed = 0; speed < 2; ++speed) {
     for (int n = 0; n < kFractions; ++n) {
       members_.push_back(make(speed, double(n) / (kFractions - 1)));
     }
@@ -104,15 +121,22 @@ double Wing::high() const {
   return high;
 }
 
+double Wing::true_speed(int speed, double z) const {
+  if (flight_.autopilot().is_px4()) {
+    return changing_mps_[speed];
+  }
+  return changing_mps_[speed] * air_ratio(z) * (speed == 0 ? kColdest : kWarmest);
+}
+
 double Wing::turn_distance(double v, const Leg& leg) const {
   if (flight_.autopilot().is_px4()) {
     return std::max(flight_.parameter("NAV_ACC_RAD"), l1_s_ * v);
   }
-  if (leg.pass_by_m > 0) {
-    return 0;
-  }
   if (leg.acceptance_m > 0) {
     return leg.acceptance_m;
+  }
+  if (leg.pass_by_m > 0) {
+    return 0;
   }
   double angle = kPi / 2;
   if (leg.next && !leg.turns_at_90) {
@@ -120,14 +144,30 @@ double Wing::turn_distance(double v, const Leg& leg) const {
     const Eigen::Vector2d out = leg.next->at - leg.to.at;
     angle = std::abs(std::atan2(cross(in, out), in.dot(out)));
   }
-  return std::min(flight_.parameter("WP_RADIUS"), l1_s_ * v) * std::min(angle, kPi / 2) / (kPi / 2);
+  const double ratio = air_ratio(leg.to.low) * kWarmest;
+  return std::min(flight_.parameter("WP_RADIUS") * ratio * ratio, l1_s_ * v) *
+         std::min(angle, kPi / 2) / (kPi / 2);
 }
 
-double Wing::sought_height(const Leg& leg, const Eigen::Vector2d& at, double share) const {
+std::array<double, 2> Wing::sought_heights(const Leg& leg, const Eigen::Vector2d& at,
+                                           double share) const {
   if (leg.to.above_ground) {
-    const double from = from_.above_ground.value_or(from_.low - flight_.ground(from_.at));
-    return flight_.ground(at) + from + share * (*leg.to.above_ground - from);
+    const auto begun = flight_.known_grounds(from_.at);
+    std::array<double, 2> heights = flight_.known_grounds(at);
+    for (int ground : {0, 1}) {
+      const double from = from_.above_ground.value_or(from_.low - begun[ground]);
+      heights[ground] += from + share * (*leg.to.above_ground - from);
+    }
+    return {std::min(heights[0], heights[1]), std::max(heights[0], heights[1])};
   }
+  const double height = sought_height(leg, share);
+  if (!has_track_ && !flight_.autopilot().is_px4()) {  // after a take-off, of which it climbed on
+    return {std::min(height, leg.to.low), std::max(height, leg.to.low)};
+  }
+  return {height, height};
+}
+
+double Wing::sought_height(const Leg& leg, double share) const {
   const double rise = leg.to.low - from_.low;
   if (flight_.autopilot().is_px4()) {
     const double length = (leg.to.at - from_.at).norm();
@@ -157,14 +197,18 @@ double Wing::highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eige
 
 void Wing::seek_heights(Member& member, double sought, double highest, double seconds) const {
   const double lag = flight_.autopilot().is_px4() ? 1 : flight_.parameter("TECS_HDEM_TCONST");
-  const double slow = std::clamp((sought - member.low) / lag, -sink_mps_, climb_mps_);
-  const double fast = std::clamp((highest - member.high) / lag, -sink_mps_, climb_mps_);
-  member.low += slow * seconds;
-  member.high += fast * seconds;
+  // The low one sinks quickly and climbs slowly, the high one the other way round.
+  const auto seek = [&](double z, double wanted, double sinks, double climbs) {
+    const double quick = wanted < z ? sinks : climbs;
+    return z + seconds * std::clamp((wanted - z) / (lag / (quick * quick)), -sink_mps_ * sinks,
+                                    climb_mps_ * climbs);
+  };
+  member.low = seek(member.low, sought, kQuick, kSlow);
+  member.high = seek(member.high, highest, kSlow, kQuick);
 }
 
-double Wing::fly(Member& member, const Leg& leg) {
-  const double v = speed_mps[member.speed];
+double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
+  const double v = true_speed(member.speed, leg.to.low);
   const double distance = member.fraction * turn_distance(v, leg);
   const Eigen::Vector2d begin = has_track_ ? from_.at : member.at;
   const Eigen::Vector2d along = leg.to.at - begin;
@@ -172,7 +216,10 @@ double Wing::fly(Member& member, const Leg& leg) {
   const Eigen::Vector2d track = along / length;
   const double finish = length + leg.pass_by_m;
   const double l1 = l1_s_ * v;
-  const double max_rate = max_turn_rate(v);
+  // The slow roll into tight turns, the fast into wide ones.
+  const double max_rate = max_turn_rate(v) * (member.speed == 0 ? 1 : kWeakest);
+  const double roll = max_rate * kTimeStep / (member.speed == 0 ? 0.4 : 1.2);
+  double rate = 0;
   const bool is_rough = leg.to.above_ground.has_value();
   const int max_steps = int((4 * (length + (member.at - begin).norm()) / v + 200) / kTimeStep);
   Vec3 before(member.at.x(), member.at.y(), member.low);
@@ -188,17 +235,25 @@ double Wing::fly(Member& member, const Leg& leg) {
     }
     const Eigen::Vector2d off = member.at - begin;
     const double done = off.dot(track);
-    if ((leg.to.at - member.at).norm() <= distance || done >= finish) {
+    if ((leg.to.at + leg.pass_by_m * track - member.at).norm() <= distance || done >= finish) {
       break;
     }
     // Steer to the place on the track that lies the distance of guidance ahead.
-    const double beside = cross(track, off);
+    const bool is_direct = !has_track_ && !flight_.autopilot().is_px4();  // at the item itself
+    const double beside = is_direct ? 0 : cross(track, off);
+    const Eigen::Vector2d along_track =
+        is_direct ? Eigen::Vector2d((leg.to.at - member.at).normalized()) : track;
     const double to_track = std::asin(std::clamp(beside / l1, -0.7071, 0.7071));
     const Eigen::Vector2d velocity = unit(member.heading);
-    const double from_track = std::atan2(cross(track, velocity), track.dot(velocity));
-    const double eta =
-        std::clamp(std::remainder(-(from_track + to_track), 2 * kPi), -kPi / 2, kPi / 2);
-    const double rate = std::clamp(2.25 * v / l1 * std::sin(eta), -max_rate, max_rate);
+    const double from_track = std::atan2(cross(along_track, velocity), along_track.dot(velocity));
+    double eta = std::remainder(-(from_track + to_track), 2 * kPi);
+    if (std::abs(eta) > kEitherWay) {  // some fly on the left, some on the right
+      eta = int(std::lround(member.fraction * (kFractions - 1))) % 2 == 0 ? 1 : -1;
+      eta *= kEitherWay;
+    }
+    eta = std::clamp(eta, -kPi / 2, kPi / 2);
+    const double wanted = std::clamp(2.25 * v / l1 * std::sin(eta), -max_rate, max_rate);
+    rate += std::clamp(wanted - rate, -roll, roll);
     const double dt = std::min(kTimeStep, std::max((finish - done) / v, 0.02));
     const double turned = rate * dt;
     member.at += v * dt * unit(member.heading + turned / 2);
@@ -206,27 +261,30 @@ double Wing::fly(Member& member, const Leg& leg) {
     seconds += dt;
     undrawn += v * dt;
     const double share = std::clamp((member.at - begin).dot(track) / length, 0.0, 1.0);
-    const double sought = sought_height(leg, member.at, share);
+    const auto [sought, sought_high] = sought_heights(leg, member.at, share);
     const double old_low = member.low;
     const double old_high = member.high;
     const double highest =
-        is_rough ? std::max(sought, highest_ahead(leg, member.at, track, finish - done, v))
-                 : sought;
+        is_rough ? std::max(sought_high, highest_ahead(leg, member.at, track, finish - done, v))
+                 : sought_high;
     seek_heights(member, sought, highest, dt);
     const bool is_level =
         std::abs(member.low - old_low) < 1e-3 && std::abs(member.high - old_high) < 1e-3;
     const bool bends = std::abs(member.heading - drawn_heading) > 0.05;
+    const double line =
+        leg.at_once || is_rough ? sought : from_.low + share * (leg.to.low - from_.low);
+    const Vec3 here(member.at.x(), member.at.y(), std::min({member.low, sought, line}));
+    const double here_high = std::max({member.high, highest, line});
+    const bool is_settled =
+        has_track_ && std::abs(beside) < kOnTrack && std::abs(from_track) < 0.05;
+    passed.push_back({here, here_high, is_settled});
     if (bends || !is_level || (is_rough && undrawn > 15) || undrawn > 200) {
-      const double line =
-          leg.at_once || is_rough ? sought : from_.low + share * (leg.to.low - from_.low);
-      const Vec3 here(member.at.x(), member.at.y(), std::min({member.low, sought, line}));
-      const double here_high = std::max({member.high, highest, line});
       const double nominal = from_.low + share * (leg.to.low - from_.low);
       const bool is_on_line = has_track_ && !is_rough &&
                               std::abs(cross(track, member.at - begin)) < kOnTrack &&
                               std::max(here_high - nominal, nominal - here.z()) < kLevel;
       if (!(was_on_line && is_on_line)) {  // else the track itself covers it
-        flight_.add_strip(before, before_high, here, here_high, kReach);
+        flight_.add_strip(before, before_high, here, here_high, is_rough ? kAboveGround : kReach);
       }
       was_on_line = is_on_line;
       before = here;
@@ -277,8 +335,32 @@ void Wing::cut_corner(const Leg& leg) {
   }
 }
 
+void Wing::fill_between(const std::vector<std::vector<Passed>>& passed) {
+  const std::size_t half = passed.size() / 2;  // of each of the speeds
+  const auto fill = [&](const std::vector<Passed>& one, const std::vector<Passed>& other) {
+    for (std::size_t n = 0; n < std::min(one.size(), other.size()); ++n) {
+      const Passed& a = one[n];
+      const Passed& b = other[n];
+      if (a.is_settled && b.is_settled) {
+        return;
+      }
+      if ((a.at - b.at).head<2>().norm() > kReach) {
+        flight_.add_strip(a.at, a.high, b.at, b.high, kReach);
+      }
+    }
+  };
+  for (std::size_t n = 0; n < half; ++n) {
+    fill(passed[n], passed[n + half]);
+    if (n + 1 < half) {
+      fill(passed[n], passed[n + 1]);
+      fill(passed[n + half], passed[n + 1 + half]);
+    }
+  }
+}
+
 void Wing::go(std::size_t command, const char* what, const Leg& leg) {
   flight_.begin(command, what);
+  does_arrive_ = true;
   if (has_track_) {
     cut_corner(leg);
   }
@@ -286,15 +368,17 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
     // The track itself, which the latest turn overshoots and the first one cuts.
     const Vec3 a = from_.point();
     if (!leg.to.above_ground && !from_.above_ground) {
-      flight_.add_leg(a, a.z(), leg.to.point(), leg.to.low, 1);
+      flight_.add_leg(a, a.z(), leg.to.point(), leg.to.low, kBesideTrack);
     }
   }
   TimeSpan time{kInfinity, 0};
-  for (Member& member : members_) {
-    const double seconds = fly(member, leg);
+  std::vector<std::vector<Passed>> passed(members_.size());
+  for (std::size_t n = 0; n < members_.size(); ++n) {
+    const double seconds = fly(members_[n], leg, passed[n]);
     time.min_s = std::min(time.min_s, 0.95 * seconds);
     time.max_s = std::max(time.max_s, 1.05 * seconds + 2);
   }
+  fill_between(passed);
   flight_.take(time);
   if (!does_arrive_) {
     flight_.remark(Remark::Weight::not_judged, "not_judged", command,
@@ -313,12 +397,11 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
                    needed, limit);
   }
   before_ = has_track_ ? std::optional(from_) : std::nullopt;
-  cut_m_ = turn_distance(speed_mps[1], leg);
+  cut_m_ = turn_distance(true_speed(1, leg.to.low), leg);
+  changing_mps_[0] = speed_mps[0];
+  changing_mps_[1] = speed_mps[1];
   circle_until_high(command, leg);
   from_ = leg.to;
-  if (leg.to.above_ground) {
-    from_.low = from_.high = flight_.ground(leg.to.at) + *leg.to.above_ground;
-  }
   has_track_ = true;
 }
 
@@ -330,22 +413,35 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
       centre.above_ground ? flight_.ground(centre.at) + *centre.above_ground : centre.low;
   const double bottom = std::min(low(), z);
   const double top = std::max({high(), z, centre.high});
-  const double widest = std::max(radius, speed_mps[1] / max_turn_rate(speed_mps[1])) * 1.1;
+  // ArduPilot scales the radius, too.
+  const double ratio = flight_.autopilot().is_px4() ? 1 : air_ratio(z) * kWarmest;
+  const double v = true_speed(1, z);
+  const double steady = std::max(radius * ratio * ratio, v / (kWeakest * max_turn_rate(v)));
+  const double widest = kSwings * steady;
   // A small circle is joined from within; a large one along a tangent, or beyond it.
   const double inner = radius < 150 ? 0 : 0.75 * radius;
-  flight_.add_disc(centre, inner, widest, bottom, top);
+  const double off = centre.above_ground ? z : 0;
+  flight_.add_disc(centre, inner, widest, bottom - off, top - off);
   const double round = 2 * kPi * radius;
   const double climb =
       std::max(std::abs(bottom - z), std::abs(top - z)) / std::min(climb_mps_, sink_mps_);
   flight_.take({seconds + turns * round / speed_mps[1] * 0.9,
                 seconds + climb + (turns + 1) * round / speed_mps[0] * 1.1});
   const double sense = clockwise ? -1 : 1;
+  if (!next) {                   // it may leave it anywhere
+    constexpr int kPlaces = 13;  // the last one is the first
+    members_.clear();
+    for (int n = 0; n < 2 * kPlaces; ++n) {
+      members_.push_back({centre.at, 2 * kPi * n / (kPlaces - 1), z, z, n / kPlaces, 0.5});
+    }
+  }
   for (Member& member : members_) {
     Eigen::Vector2d p = member.at;
     for (int n = 0; n < 4; ++n) {
       const Eigen::Vector2d toward = next ? next->at - p : unit(member.heading);
       const double heading = bearing_of(toward) + (member.fraction - 0.5) * radians(20);
-      p = centre.at + radius * unit(heading - sense * kPi / 2);
+      const double scaled = member.speed == 0 ? radius : 1.1 * steady;
+      p = centre.at + scaled * unit(heading - sense * kPi / 2);
       member.heading = heading;
     }
     member.at = p;
@@ -386,8 +482,8 @@ void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double hea
   const double foot = flight_.ground(from);
   const double height = std::max(z - foot, 1.0);
   const bool is_px4 = flight_.autopilot().is_px4();
-  const double steep =
-      is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0] : std::tan(radians(20));
+  const double steep = is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0]
+                              : std::tan(radians(flight_.parameter("PTCH_LIM_MAX_DEG")));
   const double shallow = is_px4 ? 2 / speed_mps[1] : std::tan(radians(4));
   constexpr int kRays = 5;
   for (int ray = 0; ray < kRays; ++ray) {
@@ -397,10 +493,16 @@ void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double hea
     const Vec3 far(from.x() + height / shallow * std::cos(course),
                    from.y() + height / shallow * std::sin(course), z);
     flight_.add_strip({from.x(), from.y(), foot}, foot, near, z, kReach);
-    flight_.add_strip(near, z, far, z, kReach);
+    flight_.add_strip(near, is_px4 ? z : z + kLevelsOff, far, is_px4 ? z : z + kLevelsOff, kReach);
   }
   const double v = speed_mps[1];
   flight_.take({height / steep / v, height / shallow / speed_mps[0] + 10});
   start_on(from + height / steep * unit(heading), from + height / shallow * unit(heading), z);
+  if (!is_px4) {  // it levels off late, and fast
+    for (Member& member : members_) {
+      member.high = z + kLevelsOff;
+    }
+    changing_mps_[1] *= 1.25;
+  }
 }
 }  // namespace altiplan::host
