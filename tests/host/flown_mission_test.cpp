@@ -343,5 +343,69 @@ TEST(FlownMission, ArduPilotsGroundIsInterpolatedInAGrid) {
   EXPECT_LT(outside(flown, Peak::kAt, 0, 95), 5);    // or follows it
   EXPECT_GT(outside(flown, Peak::kAt, 0, 50), 5);
 }
+
+TEST(FlownMission, APlanesCircleGrowsWithItsHeight) {
+  const auto radius_at = [](double height) {
+    MissionCommand circle = command(18, 1500, 0, height);
+    circle.params = {1, 0, 150, 0};
+    const FlownMission flown = fly({command(16, 0, 0, height), circle}, kPlane);
+    double radius = 0;
+    for (const Strip& strip : part(flown, "its circle").strips) {
+      radius = std::max(radius, (strip.from.head<2>() - Eigen::Vector2d(1500, 0)).norm());
+    }
+    return radius;
+  };
+  EXPECT_GT(radius_at(100), 150 * 1.2);  // true airspeed, squared, and the swing onto it
+  EXPECT_GT(radius_at(2600), radius_at(100) * 1.25);
+}
+
+TEST(FlownMission, APlaneTurnsWiderThanItSeeks) {
+  // Back by 150 degrees, beyond the item: flown with 60 m of radius at 23.7 m/s, and 10 m lower.
+  FlightOptions options;
+  options.parameters = {
+      {"AIRSPEED_CRUISE", 22}, {"WP_RADIUS", 50}, {"NAVL1_PERIOD", 15}, {"ROLL_LIMIT_DEG", 65}};
+  MissionCommand beyond = command(16, -1672, -250, 95);
+  beyond.params = {0, 0, 60, 0};
+  const FlownMission flown =
+      fly({command(16, -1470, -756, 95), beyond, command(16, -1065, -710, 95)}, kPlane, options);
+  for (const auto& [x, y] : {std::pair(-1647, -104), {-1587, -145}, {-1564, -215}, {-1551, -289}}) {
+    EXPECT_LT(outside(flown, x, y, 95), 0.1) << x;
+  }
+}
+
+TEST(FlownMission, APlaneLevelsOffAboveItsTakeOff) {
+  FlightOptions options;
+  options.runway_deg = 90;
+  const FlownMission flown =
+      fly({command(22, 0, 0, 50), command(16, 1600, 0, 70)}, kPlane, options);
+  EXPECT_LT(outside(flown, 230, 0, 62), 0.1);
+  EXPECT_LT(outside(flown, 500, 0, 69), 0.1);  // at once, above the ramp
+}
+
+TEST(FlownMission, APlanesSpeedChangesOnTheNextWay) {
+  const FlownMission flown = fly({command(16, -2000, 0, 100), command(16, 0, 0, 100),
+                                  order(178, {0, 20, -1, 0}), command(16, 0, 2000, 100)},
+                                 kPlane);
+  TimeSpan before;
+  TimeSpan last;
+  for (const FlownPart& one : flown.parts) {
+    if (one.command == 3) {
+      last = one.time;
+      break;
+    }
+    before = one.time;
+  }
+  EXPECT_LT(last.min_s - before.min_s, 2000 / 19.0);  // from 12 m/s to 20
+  EXPECT_GT(last.max_s - before.max_s, 2000 / 13.0);
+}
+
+TEST(FlownMission, ACircleAfterACircleIsNotJudged) {
+  MissionCommand turns = command(18, 900, 0, 100);
+  turns.params = {1, 0, 80, 0};
+  const FlownMission flown =
+      fly({command(16, 0, 0, 100), turns, command(31, 1400, 0, 100)}, kPlane);
+  EXPECT_TRUE(has_rule(flown, "not_judged"));
+  EXPECT_FALSE(has_rule(fly({command(16, 0, 0, 100), turns}, kPlane), "not_judged"));
+}
 }  // namespace
 }  // namespace altiplan::host::flown_mission_test

@@ -140,6 +140,7 @@ class Wing {
     std::optional<Destination> next;  ///< the position after that, if it is known
     double acceptance_m = 0;          ///< 0: the autopilot's own
     double pass_by_m = 0;             ///< flown beyond the item
+    double circle_m = 0;              ///< radius of the circle that it leads to
     bool at_once = false;             ///< its height is sought at once
     bool turns_at_90 = false;         ///< the autopilot assumes a right angle
   };
@@ -198,6 +199,8 @@ class Wing {
   /// Of a height that is sought slowly, and of the highest that may be.
   void seek_heights(Member& member, double sought, double highest, double seconds) const;
   void circle_until_high(std::size_t command, const Leg& leg);
+  /// How far it is below and above its height above the ground, on a circle.
+  std::array<double, 2> lags_on_circle(const Destination& centre, double radius, double v) const;
   double max_turn_rate(double v) const;
   /// In metres a second over the ground, of the slowest (0) and the fastest (1).
   double true_speed(int speed, double z) const;

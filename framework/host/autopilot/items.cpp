@@ -163,7 +163,7 @@ bool Walker::circle_wing(std::size_t n, const Destination& to) {
   const double radius = is_own ? std::abs(own) : std::abs(given);
   const bool clockwise = given != 0 ? given > 0 : own >= 0;
   Wing::Leg leg{to, next_destination(n)};
-  leg.acceptance_m = radius;
+  leg.acceptance_m = leg.circle_m = radius;
   leg.at_once = is_px4() && task != Task::loiter_to_altitude;
   if (is_px4() && task == Task::loiter_to_altitude) {
     leg.to.low = leg.to.high = wing_->low();  // level to the circle

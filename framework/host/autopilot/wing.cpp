@@ -15,7 +15,7 @@ constexpr double kTimeStep = 0.4;        // seconds
 constexpr double kLevel = 0.05;          // metres
 constexpr double kOnTrack = 1;           // metres: the reach of the track itself
 constexpr double kBesideTrack = 3;       // metres that are kept within
-constexpr double kReach = 5;             // metres: half of a step of time
+constexpr double kReach = 8;             // metres: more than half of a step of time
 constexpr int kFractions = 5;            // of the distance at which a turn begins
 constexpr double kPx4HeightRadius = 10;  // NAV_FW_ALT_RAD
 constexpr double kPx4LevelBefore = 80;   // metres before an item at which its ramp has ended
@@ -32,6 +32,7 @@ double air_ratio(double z) {
 }
 constexpr double kLevelsOff = 15;    // metres above a take-off's height
 constexpr double kAboveGround = 10;  // metres that a height above the ground is kept within
+constexpr double kWeakTurn = 0.62;   // of the turn that is sought: it sinks instead
 constexpr double kSwings = 1.4;      // how far it swings out when it joins a circle
 constexpr double kEitherWay = 2.5;   // radians to turn, beyond which it turns left or right
 constexpr double kQuick = 1.15;      // rates of climb and sink, of those that are sought
@@ -161,7 +162,10 @@ std::array<double, 2> Wing::sought_heights(const Leg& leg, const Eigen::Vector2d
     return {std::min(heights[0], heights[1]), std::max(heights[0], heights[1])};
   }
   const double height = sought_height(leg, share);
-  if (!has_track_ && !flight_.autopilot().is_px4()) {  // after a take-off, of which it climbed on
+  // It may be above the ramp by now, or climb steeply up to CLIMB_SLOPE_HGT.
+  constexpr double kSteepBelow = 25;
+  const bool may_be_steep = !has_track_ || from_.low < flight_.home_ground + kSteepBelow;
+  if (may_be_steep && !flight_.autopilot().is_px4()) {
     return {std::min(height, leg.to.low), std::max(height, leg.to.low)};
   }
   return {height, height};
@@ -217,7 +221,8 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
   const double finish = length + leg.pass_by_m;
   const double l1 = l1_s_ * v;
   // The slow roll into tight turns, the fast into wide ones.
-  const double max_rate = max_turn_rate(v) * (member.speed == 0 ? 1 : kWeakest);
+  const double weak = member.speed == 0 || flight_.autopilot().is_px4() ? 1 : kWeakTurn;
+  const double max_rate = max_turn_rate(v);
   const double roll = max_rate * kTimeStep / (member.speed == 0 ? 0.4 : 1.2);
   double rate = 0;
   const bool is_rough = leg.to.above_ground.has_value();
@@ -239,10 +244,14 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
       break;
     }
     // Steer to the place on the track that lies the distance of guidance ahead.
-    const bool is_direct = !has_track_ && !flight_.autopilot().is_px4();  // at the item itself
+    const bool is_behind = off.norm() > l1 && done < -0.7071 * off.norm();
+    const bool is_near = (leg.to.at - member.at).norm() < 3 * leg.circle_m;
+    // ArduPilot points at the item itself, or at the beginning of a track that lies ahead.
+    const bool is_direct = !flight_.autopilot().is_px4() && (!has_track_ || is_behind || is_near);
     const double beside = is_direct ? 0 : cross(track, off);
+    const Eigen::Vector2d target = has_track_ && is_behind ? begin : leg.to.at;
     const Eigen::Vector2d along_track =
-        is_direct ? Eigen::Vector2d((leg.to.at - member.at).normalized()) : track;
+        is_direct ? Eigen::Vector2d((target - member.at).normalized()) : track;
     const double to_track = std::asin(std::clamp(beside / l1, -0.7071, 0.7071));
     const Eigen::Vector2d velocity = unit(member.heading);
     const double from_track = std::atan2(cross(along_track, velocity), along_track.dot(velocity));
@@ -252,7 +261,7 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
       eta *= kEitherWay;
     }
     eta = std::clamp(eta, -kPi / 2, kPi / 2);
-    const double wanted = std::clamp(2.25 * v / l1 * std::sin(eta), -max_rate, max_rate);
+    const double wanted = weak * std::clamp(2.25 * v / l1 * std::sin(eta), -max_rate, max_rate);
     rate += std::clamp(wanted - rate, -roll, roll);
     const double dt = std::min(kTimeStep, std::max((finish - done) / v, 0.02));
     const double turned = rate * dt;
@@ -405,6 +414,28 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
   has_track_ = true;
 }
 
+std::array<double, 2> Wing::lags_on_circle(const Destination& centre, double radius,
+                                           double v) const {
+  constexpr int kSides = 48;
+  std::array<double, 2> lags = {kAboveGround, kAboveGround};
+  for (const double sense : {-1.0, 1.0}) {
+    Member member{};
+    for (int side = 0; side <= 2 * kSides; ++side) {  // the first round brings it into step
+      const auto grounds =
+          flight_.known_grounds(centre.at + radius * unit(sense * 2 * kPi * side / kSides));
+      const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+      if (side == 0) {
+        member.low = lowest;
+        member.high = highest;
+      }
+      seek_heights(member, lowest, highest, 2 * kPi * radius / kSides / v);
+      lags[0] = std::max(lags[0], lowest - member.low + kAboveGround);
+      lags[1] = std::max(lags[1], member.high - highest + kAboveGround);
+    }
+  }
+  return lags;
+}
+
 void Wing::circle(std::size_t command, const char* what, const Destination& centre, double radius,
                   bool clockwise, double turns, double seconds,
                   const std::optional<Destination>& next, bool leaves_on_tangent) {
@@ -416,12 +447,18 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
   // ArduPilot scales the radius, too.
   const double ratio = flight_.autopilot().is_px4() ? 1 : air_ratio(z) * kWarmest;
   const double v = true_speed(1, z);
-  const double steady = std::max(radius * ratio * ratio, v / (kWeakest * max_turn_rate(v)));
-  const double widest = kSwings * steady;
+  const double tightest = v / (kWeakest * max_turn_rate(v));
+  const double steady = std::max(radius * ratio * ratio, tightest);
+  // Faster than its circle allows, it flies loops beside it.
+  const double widest = (steady == tightest ? 2 : kSwings) * steady;
   // A small circle is joined from within; a large one along a tangent, or beyond it.
   const double inner = radius < 150 ? 0 : 0.75 * radius;
-  const double off = centre.above_ground ? z : 0;
-  flight_.add_disc(centre, inner, widest, bottom - off, top - off);
+  if (centre.above_ground) {
+    const auto [below, above] = lags_on_circle(centre, steady, v);
+    flight_.add_disc(centre, inner, widest, bottom - z - below, top - z + above);
+  } else {
+    flight_.add_disc(centre, inner, widest, bottom, top);
+  }
   const double round = 2 * kPi * radius;
   const double climb =
       std::max(std::abs(bottom - z), std::abs(top - z)) / std::min(climb_mps_, sink_mps_);
@@ -450,10 +487,10 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
   from_ = centre;
   before_.reset();
   from_.low = from_.high = z;
+  has_track_ = !leaves_on_tangent || flight_.autopilot().is_px4();
   if (leaves_on_tangent) {
     from_.at = mean_place();
   }
-  has_track_ = true;
 }
 
 void Wing::land(std::size_t command, const Destination& to) {
