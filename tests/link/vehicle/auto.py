@@ -61,9 +61,13 @@ class Auto:
         return self.goal
 
     def end_of_leg(self):
-        """The next leg begins where this one ended on paper, so that corners do not drift."""
-        on_leg = self.goal.kind == "leg"
-        return self.goal.target if on_leg else self.pilot.body.position
+        """The next leg begins where this one ended on paper, so that corners do not drift; after a
+        copter's circle where it would come to rest."""
+        goal, body = self.goal, self.pilot.body
+        holds = self.pilot.kind == "copter" and goal.kind == "loiter"
+        if goal.kind == "leg" or (holds and not goal.radius):
+            return goal.target
+        return body.stop_here().target if holds else body.position
 
     def advance(self, start):
         """Executes items up to and including the next NAV item."""
@@ -118,10 +122,28 @@ class Auto:
             return Goal("land", target, start)
         if item.command in CIRCLES:
             radius = item.params[1 if item.command == Command.NAV_LOITER_TO_ALT else 2]
-            return Goal("loiter", target, radius=self.circle_radius(item, radius))
+            circle = Goal("loiter", target, radius=self.circle_radius(item, radius))
+            edge = self.edge(circle, start)
+            if edge is None:
+                return circle
+            self.circle = circle
+            return Goal("leg", edge, start)
         acceptance = item.params[1] if self.pilot.kind == "plane" else 0
         return Goal("leg", target, start, following=self.following(item),
                     acceptance=acceptance or None)
+
+    def edge(self, circle, start):
+        """The nearest place of its circle, to which an ArduCopter flies first, straight."""
+        if self.pilot.kind != "copter" or self.pilot.flavour.name != "ardupilot":
+            return None
+        if not circle.radius:
+            return circle.target
+        north, east, _ = geodesy.vector(circle.target, start)
+        distance = math.hypot(north, east)
+        if distance < 0.5:
+            return None
+        scale = abs(circle.radius) / distance
+        return geodesy.offset(circle.target, north * scale, east * scale)
 
     def circle_radius(self, item, radius):
         """Copters circle only for turns and hold still otherwise."""
@@ -148,11 +170,15 @@ class Auto:
 
     def complete(self, dt):
         item, body = self.item, self.pilot.body
-        if item.command == Command.NAV_LOITER_UNLIM:
+        if item.command == Command.NAV_LOITER_UNLIM and self.goal.kind != "leg":
             return False
         if item.command == Command.NAV_RETURN_TO_LAUNCH:
             self.goal = self.pilot.go_home()
             return self.goal.kind == "land" and body.arrived(self.goal)
+        if item.command in CIRCLES and self.goal.kind == "leg":
+            if body.arrived(self.goal):
+                self.goal = self.circle
+            return False
         if self.since is None and body.arrived(self.goal):
             self.since = 0.0
             if item.command == Command.NAV_WAYPOINT and item.params[0] > 0:

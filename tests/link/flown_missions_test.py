@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""flown_missions_test.py TRACK_IN_BAND SOURCES [MISSIONS]: random missions that the test vehicle flies stay in the band
+that is predicted for ArduPilot.
+
+The vehicle is a point mass with limits of acceleration (copter), or airspeed, bank and L1 guidance (plane); it shares
+no code with the model that predicts. Which commands are flown it learns from the one table: what the table says is
+dropped stands in the mission, and is kept from the vehicle."""
+import json
+import math
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCES = pathlib.Path(sys.argv[2])
+sys.path.insert(0, str(SOURCES / "tests/link/vehicle"))
+
+import geodesy  # noqa: E402
+from constants import Command, Frame  # noqa: E402
+from flight_case import Flight, at, place  # noqa: E402
+from flavours import RTL  # noqa: E402
+from station import HOME, item  # noqa: E402
+
+COUNT = int(sys.argv[3]) if len(sys.argv) > 3 else 10
+MOST_OUTSIDE = 0.01  # of the length
+COLUMN = {"copter": 0, "plane": 1}
+
+
+def effects():
+    """The table: for each command a letter for each of the vehicles."""
+    text = (SOURCES / "framework/src/formats/mission_commands.cpp").read_text(encoding="utf-8")
+    words = dict(re.findall(r'constexpr const char\* (k\w+) = "(.{6})";', text))
+    rows = re.findall(r'\{(\d+), "[^"]*", Task::\w+, (?:"(.{6})"|(k\w+))\}', text)
+    return {int(number): own or words[common] for number, own, common in rows}
+
+
+def takeoff(height):
+    return item(Command.NAV_TAKEOFF, HOME[0], HOME[1], height)
+
+
+def order(command, *params):
+    return item(command, params=params + (0.0,) * (4 - len(params)), frame=Frame.MISSION)
+
+
+def somewhere(rng, here, distance, heading):
+    return here[0] + distance * math.cos(heading), here[1] + distance * math.sin(heading)
+
+
+def copter_mission(rng):
+    items, here, height = [takeoff(20.0)], (0.0, 0.0), 20.0
+    for n in range(rng.randint(4, 7)):
+        here = somewhere(rng, here, rng.uniform(40, 250), rng.uniform(0, 6.28))
+        height = max(10.0, height + rng.choice((0, 0, 8, -9, 20, 30)))
+        kind = rng.random()
+        if kind < 0.2:
+            items.append(at(*here, height, Command.NAV_LOITER_TURNS,
+                            params=(1.0, 0.0, float(rng.choice((15, 30))), 0.0)))
+        elif kind < 0.35:
+            items.append(at(*here, height, Command.NAV_LOITER_TIME, params=(4.0, 0.0, 0.0, 0.0)))
+        else:
+            items.append(at(*here, height, params=(float(rng.choice((0, 0, 3))), 0.0, 0.0, 0.0)))
+        if rng.random() < 0.2:
+            items.append(order(Command.DO_CHANGE_SPEED, 1.0, float(rng.choice((5, 8)))))
+        if n == 3:
+            items.append(order(Command.DO_JUMP, 2.0, 1.0))
+    items.append(order(Command.NAV_RETURN_TO_LAUNCH))
+    return items
+
+
+def plane_mission(rng):
+    heading = rng.uniform(-0.5, 0.5)
+    items, here, height = [takeoff(60.0)], somewhere(rng, (0, 0), 900, heading), 80.0
+    items.append(at(*here, height))
+    for _ in range(rng.randint(2, 5)):
+        heading += rng.uniform(-1.6, 1.6)
+        here = somewhere(rng, here, rng.uniform(700, 1300), heading)
+        height = max(60.0, height + rng.choice((0, 0, 10, -10, 30)))
+        items.append(at(*here, height, params=(0.0, float(rng.choice((0, 40))), 0.0, 0.0)))
+        if rng.random() < 0.2:
+            items.append(order(Command.DO_CHANGE_SPEED, 0.0, float(rng.choice((18, 26)))))
+    return items
+
+
+class FlownMissions(Flight):
+    def with_dropped(self, rng, items, kind):
+        """The mission with commands that fly nowhere, and the numbers of its items."""
+        dropped = [number for number, letters in effects().items() if letters[COLUMN[kind]] == "K"]
+        self.assertTrue(dropped)
+        last = items[-1] if items[-1]["command"] == Command.NAV_RETURN_TO_LAUNCH else None
+        where = len(items) - 1 if last else len(items)
+        more = at(rng.uniform(-2000, 2000), 2000.0, 50.0)
+        more["command"] = rng.choice(dropped)
+        return items[:where] + [more] + items[where:]
+
+    def write(self, folder, items):
+        lines = ["QGC WPL 110", f"0\t1\t0\t16\t0\t0\t0\t0\t{HOME[0]}\t{HOME[1]}\t{HOME[2]}\t1"]
+        for n, one in enumerate(items, 1):
+            values = [one[f"param{i}"] for i in range(1, 5)] + [one["x"] / 1e7, one["y"] / 1e7, one["z"]]
+            words = [n, 0, one["frame"], one["command"], *values, 1]
+            lines.append("\t".join(str(word) for word in words))
+        (folder / "mission.waypoints").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        parameters = "".join(f"{name} {value}\n" for name, value in self.parameters().items())
+        (folder / "vehicle.param").write_text(parameters, encoding="utf-8")
+
+    def parameters(self):
+        """The vehicle has metres under names whose unit is the centimetre."""
+        scale = {name: 100 for name in ("WPNAV_SPEED", "WPNAV_SPEED_UP", "WPNAV_SPEED_DN", "WPNAV_RADIUS")}
+        own = {name: value * scale.get(name, 1) for name, value in self.pilot.parameters.items()}
+        name = "RTL_ALT" if self.pilot.kind == "copter" else "ALT_HOLD_RTL"
+        return {**{key: value for key, value in own.items() if key != "RTL_ALT"}, name: 100 * own["RTL_ALT"]}
+
+    def outside(self, kind, seed):
+        rng = random.Random(f"{kind}{seed}")
+        flown = copter_mission(rng) if kind == "copter" else plane_mission(rng)
+        written = self.with_dropped(rng, flown, kind)
+        self.fly(f"--autopilot ardupilot --type {kind}", [at(0, 0, 0)] + flown)
+        self.begin()
+        circling = []
+
+        def ends():
+            if kind == "plane" and self.pilot.mode == RTL:
+                circling.append(self.pilot.time)
+            return not self.pilot.armed or (circling and self.pilot.time > circling[0] + 150)
+        self.assertTrue(self.station.run(2000, ends), f"{kind} {seed} did not end")
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            self.write(folder, written)
+            with open(folder / "track.csv", "w", encoding="utf-8") as track:
+                for _, position in self.track[::10]:
+                    track.write(f"{position.lon:.8f},{position.lat:.8f},{position.alt:.3f},0\n")
+            run = subprocess.run(
+                [sys.argv[1], str(folder / "mission.waypoints"), kind, str(folder / "vehicle.param"),
+                 "0" if kind == "plane" else "-", "-", str(folder / "track.csv")],
+                capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        found = json.loads(run.stdout)
+        self.assertGreater(found["flown_m"], 300)
+        return found
+
+    def check(self, kind):
+        for seed in range(COUNT):
+            with self.subTest(kind=kind, seed=seed):
+                found = self.outside(kind, seed)
+                self.assertLess(found["outside_m"] / found["flown_m"], MOST_OUTSIDE, found["worst"])
+
+    def test_copter(self):
+        self.check("copter")
+
+    def test_plane(self):
+        self.check("plane")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
