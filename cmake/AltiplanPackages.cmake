@@ -89,7 +89,8 @@ endforeach()
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_NAME altiplan)
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_CONTROL_EXTRA "${packages}/triggers;${packages}/shlibs")
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_RECOMMENDS altiplan-plugins-geo)
+# PROJ is opened by the first file of buildings that names a coordinate system.
+set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_RECOMMENDS "altiplan-plugins-geo, libproj25, proj-data")
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_SUGGESTS altiplan-dev)
 set(CPACK_DEBIAN_ALTIPLAN_DESCRIPTION "planning of routes for unmanned aircraft
 Routes over real terrain are planned, smoothed, flown in simulation, judged
@@ -118,7 +119,7 @@ include(AltiplanGdal)
 string(REGEX REPLACE "\\.so\\." "" gdal_package ${ALTIPLAN_GDAL_SONAME})
 set(CPACK_DEBIAN_GEO_PACKAGE_NAME altiplan-plugins-geo)
 set(CPACK_DEBIAN_GEO_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_GEO_PACKAGE_DEPENDS "altiplan ${same_version}, ${gdal_package}")
+set(CPACK_DEBIAN_GEO_PACKAGE_DEPENDS "altiplan ${same_version}, ${gdal_package}, proj-data")
 set(CPACK_DEBIAN_GEO_DESCRIPTION "planning of routes for unmanned aircraft: geodata, models, OMPL
 Plugins of altiplan that need large libraries: the environment 'terrain' reads
 elevation models by GDAL, the environment 'mesh' reads models of solids by

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "altiplan/formats/mission_commands.hpp"
 #include "host/first_route/tiles.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/result/result_json.hpp"
@@ -42,6 +43,31 @@ bool has_fence(const formats::MissionFile& mission) {
 std::string point_text(const char* key, const formats::MissionItem& item) {
   return std::string(key) + ": {at_lonlat: [" + host::exact_json_text(item.at.lon) + ", " +
          host::exact_json_text(item.at.lat) + ", 0]}\n";
+}
+
+/// Where the mission may send the vehicle; 0, 0 stands for the place where it is.
+std::vector<LonLat> positions_of(const formats::MissionFile& mission) {
+  std::vector<LonLat> positions;
+  const auto add = [&](double lon, double lat) {
+    if (lon != 0 || lat != 0) {
+      positions.push_back({lon, lat});
+    }
+  };
+  for (const formats::MissionItem& item : mission.items) {
+    add(item.at.lon, item.at.lat);
+  }
+  for (const formats::MissionCommand& command : mission.commands) {
+    if (formats::flies_to_position(formats::command_task(command.number).task)) {
+      add(command.lon, command.lat);
+    }
+  }
+  for (const formats::MissionPoint& rally : mission.rally) {
+    add(rally.lon, rally.lat);
+  }
+  if (mission.home) {
+    add(mission.home->lon, mission.home->lat);
+  }
+  return positions;
 }
 
 /// Seconds for which zones with hours are looked at.
@@ -129,6 +155,7 @@ host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission
   host::Config config =
       host::load_scenario_text(world_text(plan, mission), std::string(kWorld), overrides);
   config.is_only_judged = true;
+  config.about = positions_of(mission);
   return config;
 }
 }  // namespace altiplan::cli

@@ -93,22 +93,83 @@ void Flight::add_strip(const Vec3& from, double from_high, const Vec3& to, doubl
   }
 }
 
+namespace {
+
+/// The line that an autopilot flies between two places, of those that are called straight: PX4's is
+/// straight in an azimuthal projection about a place nearby, which is a geodesic but for L³ / (8 R²);
+/// ArduPilot's runs in even steps of latitude and longitude but for east times the tangent of the
+/// latitude times the change of latitude / 8, as it scales longitudes by that of the leg's middle.
+class FlownLine {
+ public:
+  FlownLine(const Frame& frame, const Vec3& from, const Vec3& to, bool is_px4)
+      : frame_(frame),
+        from_(frame.to_lonlat(from.x(), from.y())),
+        to_(frame.to_lonlat(to.x(), to.y())),
+        is_px4_(is_px4) {
+    constexpr double kEarth = 6'371'000;
+    const auto [metres, bearing_deg] = geodesic_course(from_, to_);
+    metres_ = metres;
+    bearing_deg_ = bearing_deg;
+    to_[0] = longitude_near(to_[0], from_[0]);
+    const GroundRadii radii = ground_radii((from_[1] + to_[1]) / 2);
+    const double east = radians(to_[0] - from_[0]) * radii.east;
+    const double tangent = kEarth / radii.east;  // more than the latitude's
+    doubt_m_ = is_px4 ? std::pow(metres, 3) / (8 * kEarth * kEarth)
+                      : std::abs(east * tangent * radians(to_[1] - from_[1])) / 8;
+  }
+
+  Vec3 at(double share) const {
+    const LonLat place = is_px4_ ? geodesic_end(from_, bearing_deg_, share * metres_)
+                                 : LonLat{from_[0] + share * (to_[0] - from_[0]),
+                                          from_[1] + share * (to_[1] - from_[1])};
+    const auto [x, y] = frame_.to_local(place[0], place[1]);
+    return {x, y, 0};
+  }
+  /// How far the vehicle may be beside it.
+  double doubt_m() const { return doubt_m_; }
+
+ private:
+  const Frame& frame_;
+  LonLat from_;
+  LonLat to_;
+  bool is_px4_;
+  double metres_ = 0;
+  double bearing_deg_ = 0;
+  double doubt_m_ = 0;
+};
+}  // namespace
+
 void Flight::add_leg(const Vec3& from, double from_high, const Vec3& to, double to_high,
                      double reach) {
-  constexpr double kEarth = 6'371'000;
-  const Vec3 along(to.x() - from.x(), to.y() - from.y(), 0);
-  double apart = 0;
-  if (world_.frame().has_position() && along.norm() > 0) {
-    const double lat = world_.frame().to_lonlat(from.x(), from.y())[1];
-    apart = along.squaredNorm() * std::abs(std::tan(radians(lat))) / (8 * kEarth);
+  constexpr double kShort = 200;    // metres, on which all lines are one to a millimetre
+  constexpr double kOff = 0.02;     // metres between the line and its chords
+  constexpr int kMaxChords = 4096;
+  const double length = (to - from).head<2>().norm();
+  if (!world_.frame().has_position() || length < kShort) {
+    add_strip(from, from_high, to, to_high, reach);
+    return;
   }
-  const int lines = apart > kSpacing / 2 ? int(std::ceil(2 * apart / kSpacing)) : 0;
-  for (int line = 0; line <= lines && lines > 0; ++line) {
-    const double off = apart * (2.0 * line / lines - 1);
-    const Vec3 aside = Vec3(-along.y(), along.x(), 0).normalized() * off;
-    add_strip(from + aside, from_high, to + aside, to_high, std::max(reach, kSpacing / 2));
+  const FlownLine line(world_.frame(), from, to, autopilot().is_px4());
+  const Vec3 middle = (from + to) / 2;
+  const double sag = (line.at(0.5) - Vec3(middle.x(), middle.y(), 0)).norm();
+  // The sag of a chord falls with the square of its length.
+  const int chords = std::clamp(int(std::ceil(std::sqrt(sag / kOff))), 1, kMaxChords);
+  const double doubt = line.doubt_m() + std::min(sag, kOff);
+  Vec3 last = from;
+  double last_high = from_high;
+  for (int n = 1; n <= chords; ++n) {
+    const double share = double(n) / chords;
+    Vec3 next = line.at(share);
+    next.z() = from.z() + share * (to.z() - from.z());
+    double next_high = from_high + share * (to_high - from_high);
+    if (n == chords) {
+      next = to;
+      next_high = to_high;
+    }
+    add_strip(last, last_high, next, next_high, reach + doubt);
+    last = next;
+    last_high = next_high;
   }
-  add_strip(from, from_high, to, to_high, lines > 0 ? reach : reach + apart);
 }
 
 void Flight::add_column(const Eigen::Vector2d& at, double low, double high, double reach) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "altiplan/error.hpp"
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 
 namespace altiplan::host {
@@ -72,12 +74,25 @@ struct PrismParams {
             "expected either outline_m or outline_lonlat");
     f.check(outline_m.size() + outline_lonlat.size() >= 3, "expected at least three corners");
   }
-  Shape shape(const Site& site) const {
-    Prism prism{outline_m, {}, heights.floor(), heights.ceiling()};
-    for (const auto& corner : outline_lonlat) {
-      prism.outline.push_back(site.frame.to_local(corner[0], corner[1]));
+  std::vector<Shape> shapes(const Site& site) const {
+    std::vector<formats::Polygon> polygons{{outline_m, {}}};
+    if (!outline_lonlat.empty()) {
+      polygons = formats::in_frame(formats::unfolded(formats::Polygon{outline_lonlat, {}}),
+                                   site.frame);
     }
-    return prism;
+    std::vector<Shape> prisms;
+    for (formats::Polygon& polygon : polygons) {
+      prisms.push_back(Prism{std::move(polygon.outline), {}, heights.floor(), heights.ceiling()});
+    }
+    return prisms;
+  }
+  /// One that moves.
+  Shape shape(const Site& site) const {
+    const std::vector<Shape> parts = shapes(site);
+    if (parts.size() != 1) {
+      throw Error("outline_lonlat: expected a polygon near the other layers, on one side of the Earth");
+    }
+    return parts.front();
   }
 };
 
@@ -87,12 +102,17 @@ class OneShape final : public kit::ShapeLayer {
   OneShape(const Params& params, const Site& site) : ShapeLayer({params.shape(site)}) {}
 };
 
+class PrismLayer final : public kit::ShapeLayer {
+ public:
+  PrismLayer(const PrismParams& params, const Site& site) : ShapeLayer(params.shapes(site)) {}
+};
+
 constexpr PluginEntry kEnvironments[] = {
     detail::make_entry<Environment, OneShape<SphereParams>, SphereParams>("sphere", "a sphere"),
     detail::make_entry<Environment, OneShape<CylinderParams>, CylinderParams>(
         "cylinder", "an upright cylinder"),
     detail::make_entry<Environment, OneShape<BoxParams>, BoxParams>("box", "an axis-aligned box"),
-    detail::make_entry<Environment, OneShape<PrismParams>, PrismParams>(
+    detail::make_entry<Environment, PrismLayer, PrismParams>(
         "prism", "an upright prism over a polygon")};
 
 /// m/s; beyond this, positions at the end of a long flight overflow.

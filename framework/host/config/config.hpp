@@ -36,6 +36,7 @@ struct Config {
   std::vector<std::string> notes;  ///< what was ignored while reading the files
   /// Nothing is planned in this world: its volume stays as given, and ends may lie outside it.
   bool is_only_judged = false;
+  std::vector<LonLat> about;  ///< positions of the mission that is judged
 };
 
 /// Reads and checks both files; throws ConfigError with every problem of both. Reuses `shared` if

@@ -236,13 +236,14 @@ void VehicleEntry::describe(Fields& f) {
 void FrameEntry::describe(Fields& f) {
   f("crs", crs)
       .doc(
-          "coordinate system to plan in (EPSG:32617, …), or auto: a projected model's own, else "
-          "UTM; "
-          "elevation models are warped to it");
+          "coordinate system to plan in, to which elevation models are warped: EPSG:32617, …; "
+          "auto: a model's own if lengths are right in it, else local about its middle; local: "
+          "conformal, true to scale about origin_lonlat, anywhere on the Earth");
   f("origin_lonlat", origin_lonlat)
       .unit("deg")
       .doc("longitude and latitude of the origin, if no layer is georeferenced");
-  f.check(crs.empty() || !origin_lonlat, "expected crs or origin_lonlat, not both");
+  f.check(crs.empty() || (crs == "local") == origin_lonlat.has_value(),
+          "expected crs or origin_lonlat, or crs: local with origin_lonlat");
   f.check(!origin_lonlat ||
               (std::abs((*origin_lonlat)[0]) <= 180 && std::abs((*origin_lonlat)[1]) <= 90),
           "expected origin_lonlat as longitude in [-180, 180], then latitude in [-90, 90]");

@@ -7,7 +7,6 @@
 #include "altiplan/error.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
-#include "altiplan/kit/layers/utm.hpp"
 #include "altiplan/world.hpp"
 #include "host/base/words.hpp"
 
@@ -56,85 +55,84 @@ Corridor::Corridor(const RouteWish& wish, Registry& registry)
 }
 
 void Corridor::drop_distant() {
-  const WishedPoint& from = wished_.front();
-  const Frame flat = Frame::geographic(from.lon, from.lat, from.lat);
-  const auto local = [&](double lon, double lat) {
-    const auto [x, y] = flat.to_local(lon, lat);
-    return Vec3(x, y, 0);
-  };
+  const Frame flat = Frame::local({wished_.front().lon, wished_.front().lat});
   Box reached = Box::empty();
   double length = 0;
-  Vec3 before = local(from.lon, from.lat);
+  Vec3 before(0, 0, 0);
   for (const WishedPoint& point : wished_) {
-    const Vec3 at = local(point.lon, point.lat);
-    length += (at - before).norm();
-    before = at;
-    reached = reached.with(at);
+    const auto [x, y] = flat.to_local(point.lon, point.lat);
+    length += (Vec3(x, y, 0) - before).norm();
+    before = {x, y, 0};
+    reached = reached.with(before);
   }
+  const Vec3 centre = (reached.min + reached.max) / 2;
+  const auto [lon, lat] = flat.to_lonlat(centre.x(), centre.y());
+  middle_ = {rounded(lon, 1e-3), std::clamp(rounded(lat, 1e-3), -90.0, 90.0)};
   reached = reached.grown(kMargins[kWidths - 1].of(length, turn_radius_m_));
   const auto is_distant = [&](const Tile& tile) {
-    const Box degrees = tile.degrees();
-    const Box box{local(degrees.min.x(), degrees.min.y()), local(degrees.max.x(), degrees.max.y())};
-    return box.intersected(reached).is_empty();
+    constexpr int kPoints = 8;
+    Box box = Box::empty();
+    for (int i = 0; i <= kPoints; ++i) {
+      for (int j = 0; j <= kPoints; ++j) {
+        const Vec3 size = tile.bounds.max - tile.bounds.min;
+        const auto place = tile.frame.to_lonlat(tile.bounds.min.x() + size.x() * i / kPoints,
+                                                tile.bounds.min.y() + size.y() * j / kPoints);
+        const auto [x, y] = flat.to_local(place[0], place[1]);
+        box = box.with({x, y, 0});
+      }
+    }
+    return box.is_bounded() && box.intersected(reached).is_empty();
   };
   tiles_.erase(std::remove_if(tiles_.begin(), tiles_.end(), is_distant), tiles_.end());
 }
 
-/// A geographic model is scaled for the latitude of the flight. A projected one keeps its own axes
-/// unless they are so far off that it is resampled to those of UTM, which rounds summits.
+/// A geographic model is scaled for the latitude of the flight, and a projected one keeps its own
+/// axes, unless lengths are wrong in them: then it is resampled, which rounds summits.
 void Corridor::choose_frame() {
-  Box degrees = Box::empty();
-  for (const WishedPoint& point : wished_) {
-    degrees = degrees.with({point.lon, point.lat, 0});
-  }
-  const Vec3 middle = (degrees.min + degrees.max) / 2;
   const auto is_geographic = [](const Tile& tile) { return tile.is_geographic(); };
-  if (std::all_of(tiles_.begin(), tiles_.end(), is_geographic)) {
-    const double lon = rounded(middle.x(), 1e-3);
-    const double lat = rounded(middle.y(), 1e-3);
-    frame_ = Frame::geographic(lon, lat, lat);
-    frame_line_ =
-        "frame: {origin_lonlat: [" + with_digits(lon, 7) + ", " + with_digits(lat, 7) + "]}";
-    return;
-  }
-  frame_ = tiles_.front().frame;
+  const bool are_geographic = std::all_of(tiles_.begin(), tiles_.end(), is_geographic);
+  const std::string origin =
+      "origin_lonlat: [" + with_digits(middle_[0], 7) + ", " + with_digits(middle_[1], 7) + "]}";
+  frame_ = are_geographic ? Frame::geographic(middle_[0], middle_[1], middle_[1])
+                          : tiles_.front().frame;
+  frame_line_ = are_geographic ? "frame: {" + origin : "";
   Box box = Box::empty();
   for (const WishedPoint& point : wished_) {
     const auto [x, y] = frame_.to_local(point.lon, point.lat);
     box = box.with({x, y, 0});
   }
-  if (frame_.scale_error(box.grown(1)) > kMaxScaleError) {
-    const World empty;
-    Site site;
-    site.before = &empty;
-    site.frame_crs = crs_ = kit::utm_crs(middle.x(), middle.y());
-    frame_ = build_model(tiles_.front(), site, registry_)->info().frame.value();
-    frame_line_ = "frame: {crs: " + crs_ + "}";
+  if (tiles_.front().is_scaled() || !(frame_.scale_error(box.grown(1)) <= kMaxScaleError)) {
+    frame_ = Frame::local(middle_);
+    frame_line_ = "frame: {crs: local, " + origin;
+    is_resampled_ = true;
   }
 }
 
 std::string Corridor::frame_in_words() const {
-  return crs_.empty() ? frame_.crs() : crs_ + ", resampled from " + tiles_.front().frame.crs();
+  return frame_.crs() + (is_resampled_ ? ", resampled from " + tiles_.front().frame.crs() : "");
 }
 
-/// The rectangle between the images of the model's edges.
+/// What the model covers there.
 Box Corridor::in_frame(const Tile& tile) const {
-  const Vec3& low = tile.bounds.min;
-  const Vec3& high = tile.bounds.max;
-  Box inner;
-  for (const double share : {0.0, 0.5, 1.0}) {
-    const double x = low.x() + share * (high.x() - low.x());
-    const double y = low.y() + share * (high.y() - low.y());
-    const auto at = [&](double own_x, double own_y) {
-      const auto [lon, lat] = tile.frame.to_lonlat(own_x, own_y);
-      return frame_.to_local(lon, lat);
-    };
-    inner.min.x() = std::max(inner.min.x(), at(low.x(), y)[0]);
-    inner.max.x() = std::min(inner.max.x(), at(high.x(), y)[0]);
-    inner.min.y() = std::max(inner.min.y(), at(x, low.y())[1]);
-    inner.max.y() = std::min(inner.max.y(), at(x, high.y())[1]);
+  if (frame_.crs() != tile.frame.crs() || is_resampled_) {
+    const auto [known, is_new] = covered_.try_emplace(tile.file);
+    if (is_new) {
+      const World empty;
+      Site site;
+      site.frame = frame_;
+      site.before = &empty;
+      known->second = build_model(tile, site, registry_)->bounds();
+    }
+    return known->second;
   }
-  return inner;
+  const auto at = [&](const Vec3& own) {
+    const auto [lon, lat] = tile.frame.to_lonlat(own.x(), own.y());
+    const auto [x, y] = frame_.to_local(lon, lat);
+    return Vec3(x, y, 0);
+  };
+  const Vec3 low = at(tile.bounds.min);
+  const Vec3 high = at(tile.bounds.max);
+  return {{low.x(), low.y(), -kInfinity}, {high.x(), high.y(), kInfinity}};
 }
 
 std::vector<Tile> Corridor::tiles(const Box& box) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,8 +51,11 @@ class Corridor {
   std::vector<WishedPoint> wished_;
   double turn_radius_m_ = 0;
   std::string frame_line_;
-  std::string crs_;  ///< "" unless the models are brought into it
+  LonLat middle_{0, 0};        ///< of the points
+  bool is_resampled_ = false;  ///< the models are brought into the frame
   Frame frame_;
+  /// Of each model in the frame, where that takes building it.
+  mutable std::map<std::filesystem::path, Box> covered_;
   std::vector<Vec3> points_;  ///< without heights
   double length_m_ = 0;
 };

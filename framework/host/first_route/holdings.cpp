@@ -37,9 +37,7 @@ std::string words(const formats::ZoneLimit& limit) {
 class Extent {
  public:
   void add(double lon, double lat) {
-    // 178.5 to 181.5 across the antimeridian
-    const double turns = box_.is_empty() ? 0 : std::round((box_.min.x() - lon) / 360);
-    box_ = box_.with({lon + 360 * turns, lat, 0});
+    box_ = box_.with({box_.is_empty() ? lon : longitude_near(lon, box_.min.x()), lat, 0});
   }
   void add(const std::vector<formats::Zone>& zones) {
     for (const formats::Point2& p : formats::corners_of(zones)) {

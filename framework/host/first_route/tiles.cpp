@@ -54,9 +54,6 @@ Tile probe(Tile tile, Registry& registry) {
   return tile;
 }
 
-/// Whole turns that bring a longitude within 180 degrees of another.
-double turns_to(double there, double lon) { return std::round((there - lon) / 360); }
-
 std::string lonlat(double lon, double lat) {
   return with_digits(lon, 9) + "," + with_digits(lat, 9);
 }
@@ -101,20 +98,6 @@ bool Tile::holds(double lon, double lat) const {
   } catch (const Error&) {
     return false;  // so far away that its projection fails
   }
-}
-
-Box Tile::degrees() const {
-  Box degrees = Box::empty();
-  for (const double u : {0.0, 0.5, 1.0}) {
-    for (const double v : {0.0, 0.5, 1.0}) {
-      const Vec3 p = bounds.min + (bounds.max - bounds.min).cwiseProduct(Vec3(u, v, 0));
-      const auto [lon, lat] = frame.to_lonlat(p.x(), p.y());
-      // 178.5 to 181.5 across the antimeridian
-      const double turns = degrees.is_empty() ? 0 : turns_to(degrees.min.x(), lon);
-      degrees = degrees.with({lon + 360 * turns, lat, 0});
-    }
-  }
-  return degrees;
 }
 
 std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry,
@@ -185,7 +168,7 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry) {
 
 void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
   const auto& [option, lon, lat, height] = point;
-  const double usual = lon - 360 * std::round(lon / 360);
+  const double usual = longitude_near(lon, 0);
   if (std::abs(lon) > 180 && is_held(tiles, lon, lat)) {
     throw Error(option + ": expected a longitude from -180 to 180, found " + with_digits(lon, 9) +
                 ": give " + with_digits(usual, 9));
@@ -210,16 +193,16 @@ void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
   }
   Box degrees = Box::empty();
   for (const Tile& tile : tiles) {
-    const Box more = tile.degrees();
-    const double turns = degrees.is_empty() ? 0 : turns_to(degrees.min.x(), more.min.x());
-    const Vec3 east(360 * turns, 0, 0);
+    const Box more = tile.frame.degrees(tile.bounds);
+    const double west = more.min.x();
+    const Vec3 east(degrees.is_empty() ? 0 : longitude_near(west, degrees.min.x()) - west, 0, 0);
     degrees = degrees.united({more.min + east, more.max + east});
   }
   const auto range = [](double low, double high) {
     return with_digits(low, 7) + " to " + with_digits(high, 7);
   };
   // The sides of a projected model are not meridians and parallels.
-  const bool beside = degrees.contains(Vec3(lon, lat, 0));
+  const bool beside = degrees.contains(Vec3(lon, lat, degrees.min.z()));
   throw Error(what + ", which covers longitude " + range(degrees.min.x(), degrees.max.x()) +
               " and latitude " + range(degrees.min.y(), degrees.max.y()) +
               (beside ? " but not all of that: its sides, or those of its tiles, do not run along "

@@ -319,6 +319,25 @@ formats::MissionFile without_landing(formats::MissionFile plan) {
   return plan;
 }
 
+/// Metres along the route, of which the frame makes more or less.
+double length_on_ground(const Route& route, const Frame& frame) {
+  double length = 0;
+  for (std::size_t n = 0; n < route.leg_count(); ++n) {
+    const Leg leg = route.leg(n);
+    const Vec3 across = leg.to - leg.from;
+    const double flat = across.head<2>().norm();
+    double scale = 1;
+    if (frame.has_position() && flat > 1) {
+      scale = geodesic_course(frame.to_lonlat(leg.from.x(), leg.from.y()),
+                              frame.to_lonlat(leg.to.x(), leg.to.y()))
+                  .metres /
+              flat;
+    }
+    length += leg.turns() ? leg.length() * scale : std::hypot(flat * scale, across.z());
+  }
+  return length;
+}
+
 /// What a scenario demands of the whole route: its ends, its turns, its length.
 void add_route_violations(PlanReport& report, const Mission& world, const Request& request) {
   const Route& route = report.imported.route;
@@ -355,7 +374,7 @@ std::vector<FlownMission> estimated_flights(const formats::MissionFile& plan,
                                             const GateOptions& options) {
   const formats::MissionPoint& first = plan.items.front().at;
   Mission mission;
-  mission.truth = World().with_frame(Frame::geographic(first.lon, first.lat, first.lat));
+  mission.truth = World().with_frame(Frame::local({first.lon, first.lat}));
   return Gate(plan, mission, options).flights();
 }
 
@@ -387,6 +406,7 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   add_rally(report, plan, request);
   add_home(report, plan, world.truth);
   report.measures = measure(route, request);
+  report.measures.length_m = length_on_ground(route, world.truth.frame());
   return report;
 }
 

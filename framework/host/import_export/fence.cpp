@@ -33,15 +33,14 @@ formats::Ring lonlat(const Frame& frame, const formats::Ring& ring) {
 WorldZone circle_of(const Frame& frame, double x, double y, double radius, bool keep_in) {
   constexpr int kDirections = 64;
   const auto [lon, lat] = frame.to_lonlat(x, y);
-  const Frame around = Frame::geographic(lon, lat, lat);
   double low = kInfinity;
   double high = 0;
   for (int n = 0; n < kDirections; ++n) {
     const double angle = 2 * kPi * n / kDirections;
     const auto at = frame.to_lonlat(x + radius * std::cos(angle), y + radius * std::sin(angle));
-    const auto [east, north] = around.to_local(at[0], at[1]);
-    low = std::min(low, std::hypot(east, north));
-    high = std::max(high, std::hypot(east, north));
+    const double metres = geodesic_course({lon, lat}, at).metres;
+    low = std::min(low, metres);
+    high = std::max(high, metres);
   }
   WorldZone result;
   result.zone.volumes = {{{}, {}, {}, {lon, lat}, keep_in ? low : high}};

@@ -34,13 +34,12 @@ formats::Polygon polygon_of(const formats::Zone& zone) {
   if (!circle.polygon.outline.empty()) {
     return circle.polygon;
   }
-  const Frame frame = Frame::geographic(circle.centre[0], circle.centre[1], circle.centre[1]);
   const double radius =
       zone.keeps_in() ? circle.radius_m : circle.radius_m / std::cos(kPi / kCorners);
   formats::Polygon polygon;
   for (int n = 0; n < kCorners; ++n) {
-    const double angle = 2 * kPi * n / kCorners;
-    polygon.outline.push_back(frame.to_lonlat(radius * std::cos(angle), radius * std::sin(angle)));
+    const auto [lon, lat] = geodesic_end(circle.centre, -360.0 * n / kCorners, radius);
+    polygon.outline.push_back({longitude_near(lon, 0), lat});
   }
   return polygon;
 }

@@ -9,30 +9,6 @@
 namespace altiplan::host {
 namespace {
 
-struct Degrees {
-  std::array<double, 2> low{180, 90};
-  std::array<double, 2> high{-180, -90};
-};
-
-/// The longitudes and latitudes between which the area's outline runs.
-Degrees degrees_of(const Frame& frame, const Box& area) {
-  constexpr int kPoints = 8;
-  Degrees range;
-  for (int i = 0; i <= kPoints; ++i) {
-    for (int j = 0; j <= kPoints; ++j) {
-      const auto at = [&](int axis, int n) {
-        return area.min[axis] + (area.max[axis] - area.min[axis]) * n / kPoints;
-      };
-      const auto lonlat = frame.to_lonlat(at(0, i), at(1, j));
-      for (std::size_t k = 0; k < 2; ++k) {
-        range.low[k] = std::min(range.low[k], lonlat[k]);
-        range.high[k] = std::max(range.high[k], lonlat[k]);
-      }
-    }
-  }
-  return range;
-}
-
 bool is_within(const Frame& frame, double lon, double lat, const Box& area) {
   if (std::abs(lon) > 180 || std::abs(lat) > 90) {
     return false;
@@ -68,9 +44,9 @@ std::string beside(const Point& point, const Frame& frame, const std::string& wh
     return place + ", and [" + with_digits(lat, 8) + ", " + with_digits(lon, 8) +
            "] is inside: give longitude first";
   }
-  const Degrees range = degrees_of(frame, area);
-  return place + ", which covers longitude " + with_digits(range.low[0], 7) + " to " +
-         with_digits(range.high[0], 7) + ", latitude " + with_digits(range.low[1], 7) + " to " +
-         with_digits(range.high[1], 7);
+  const Box range = frame.degrees(area);
+  return place + ", which covers longitude " + with_digits(range.min.x(), 7) + " to " +
+         with_digits(range.max.x(), 7) + ", latitude " + with_digits(range.min.y(), 7) + " to " +
+         with_digits(range.max.y(), 7);
 }
 }  // namespace altiplan::host

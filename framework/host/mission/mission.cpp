@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 
 #include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
@@ -56,16 +57,32 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
 
 using Calling = std::function<void(const std::string&)>;
 
-std::vector<NamedConstraint> constraints_of(const Config& config, const Calling& calling) {
+/// The parameters of a constraint; its largest distance from the ground less what lengths are off
+/// by, where routes are only judged.
+Value parameters_of(const ConstraintEntry& entry, double scale_error) {
+  Value parameters = entry.parameters;
+  if (Value* limit = entry.plugin == "ground_distance" ? parameters.find("max_m") : nullptr) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", std::atof(limit->text.c_str()) / (1 + scale_error));
+    limit->text = text;
+  }
+  return parameters;
+}
+
+/// `scale_error`: of lengths, by which limits on them are tightened.
+std::vector<NamedConstraint> constraints_of(const Config& config, double scale_error,
+                                            const Calling& calling) {
   std::vector<NamedConstraint> all;
   for (const auto* entries : {&config.scenario.constraints, &config.pipeline.constraints}) {
     for (const ConstraintEntry& entry : *entries) {
       const std::string who = "the constraint '" + entry.plugin + "'";
       calling(who + ": its constructor");
       try {
+        const Value parameters =
+            scale_error > 0 ? parameters_of(entry, scale_error) : entry.parameters;
         all.push_back(
             {entry.plugin,
-             plugin(*config.registry, "constraint", entry.plugin).constraint(&entry.parameters)});
+             plugin(*config.registry, "constraint", entry.plugin).constraint(&parameters)});
       } catch (const PluginError& error) {
         throw PluginError(who + " " + error.what(), error.reason());
       }
@@ -250,6 +267,7 @@ Site site_of(const Config& config) {
   Site site;
   site.vehicle = vehicle_of(file.vehicle, config.scenario_tree.find("vehicle"), *config.registry);
   site.frame_crs = file.frame.crs;
+  site.about = config.about;
   site.random = RandomStream(std::uint64_t(config.seed));
   if (file.start_time) {
     site.start_time_s = formats::parse_iso_time(*file.start_time).value();  // checked on reading
@@ -325,12 +343,14 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   mission.vehicle_type = file.vehicle.flown_as();
   Site& site = mission.site;
   if (file.frame.origin_lonlat) {
-    const auto [lon, lat] = *file.frame.origin_lonlat;
-    mission.truth = mission.truth.with_frame(Frame::geographic(lon, lat, lat));
+    const LonLat& origin = *file.frame.origin_lonlat;
+    mission.truth = mission.truth.with_frame(
+        file.frame.crs == "local" ? Frame::local(origin)
+                                  : Frame::geographic(origin[0], origin[1], origin[1]));
   }
   build_layers(config, mission, calling, on_note);
   World& truth = mission.truth;
-  if (!file.frame.crs.empty() && !truth.has_ground()) {
+  if (!file.frame.crs.empty() && !file.frame.origin_lonlat && !truth.has_ground()) {
     throw ConfigError(place_of(config.scenario_tree, "frame"), "frame.crs",
                       "only an elevation model (terrain) can be warped to a coordinate system, "
                       "and the world has none: give origin_lonlat, a point near the flight");
@@ -346,7 +366,9 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   if (!config.is_only_judged) {
     expect_within(config, mission);
   }
-  note_scale(mission, on_note);
+  const double off = note_scale(mission, on_note);
+  // What is clear must be so whichever way the frame is wrong.
+  const double scale_error = config.is_only_judged ? off : 0;
   warn_of_distant_layers(mission);
   truth = truth.with_moving(moving_of(config, site, site.volume, level.has_value()));
 
@@ -356,10 +378,12 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   request.random = site.random;
   mission.known = known_part(truth);
   request.world = std::make_shared<const World>(mission.known);
-  const std::vector<NamedConstraint> constraints = constraints_of(config, calling);
+  const std::vector<NamedConstraint> constraints = constraints_of(config, scale_error, calling);
   mission.track_request = request;
   apply_constraints(request, constraints, AppliesTo::route);
   apply_constraints(mission.track_request, constraints, AppliesTo::track);
+  request.vehicle.radius_m *= 1 + scale_error;
+  request.limits.min_clearance *= 1 + scale_error;
   calling("");
   site.before = nullptr;
   mission.setup_time_s =

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 
-#include "altiplan/kit/layers/utm.hpp"
 #include "host/mission/coverage.hpp"
 
 namespace altiplan::host {
@@ -15,15 +14,28 @@ std::string percent(double share) {
   return text;
 }
 
-/// The volume, as far as there is ground, far from which a map projection may be undefined.
+/// About a mission; else the volume, as far as there is ground, far from which a map projection may
+/// be undefined.
 Box flown_area(const Mission& mission) {
+  if (!mission.site.about.empty()) {
+    constexpr double kMargin = 1000;  // metres
+    Box area = Box::empty();
+    for (const auto& [lon, lat] : mission.site.about) {
+      const auto [x, y] = mission.truth.frame().to_local(lon, lat);
+      area = area.with({x, y, 0});
+    }
+    return area.grown(kMargin);
+  }
   const Box ground = mission.truth.has_ground() ? ground_area(mission.truth) : mission.site.volume;
   return ground.intersected(mission.site.volume);
 }
 }  // namespace
 
-void note_scale(Mission& mission, const NoteSink& on_note) {
+double note_scale(Mission& mission, const NoteSink& on_note) {
   const Frame& frame = mission.truth.frame();
+  if (!frame.has_position()) {
+    return 0;
+  }
   const Box area = flown_area(mission);
   const double error = frame.scale_error(area);
   if (error > 0) {
@@ -33,13 +45,11 @@ void note_scale(Mission& mission, const NoteSink& on_note) {
   if (error > 0.005) {
     const Vec3 middle = (area.min + area.max) / 2;
     const auto [lon, lat] = frame.to_lonlat(middle.x(), middle.y());
-    char origin[64];
-    std::snprintf(origin, sizeof origin, "{origin_lonlat: [%.3f, %.3f]}", lon, lat);
-    mission.warnings.push_back(
-        "lengths in the local frame are off by up to " + percent(error) +
-        (mission.truth.has_ground()
-             ? "; use a projected coordinate system: frame: {crs: '" + kit::utm_crs(lon, lat) + "'}"
-             : "; use an origin near the flight: frame: " + std::string(origin)));
+    char line[96];
+    std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}", lon, lat);
+    mission.warnings.push_back("lengths in the local frame are off by up to " + percent(error) +
+                               "; use one about the flight: " + line);
   }
+  return error;
 }
 }  // namespace altiplan::host

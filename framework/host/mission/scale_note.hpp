@@ -5,6 +5,6 @@
 
 namespace altiplan::host {
 
-/// Notes the frame's scale error where routes may be, and warns if it is large.
-void note_scale(Mission& mission, const NoteSink& on_note);
+/// Notes the frame's scale error where routes may be, and warns if it is large. Returns it.
+double note_scale(Mission& mission, const NoteSink& on_note);
 }  // namespace altiplan::host

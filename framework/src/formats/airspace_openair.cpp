@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "airspace_parts.hpp"
+#include "altiplan/earth.hpp"
 #include "altiplan/geometry.hpp"
 #include "openair_values.hpp"
 #include "xml_parts.hpp"

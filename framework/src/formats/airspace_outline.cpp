@@ -4,6 +4,8 @@
 #include <map>
 
 #include "airspace_parts.hpp"
+#include "altiplan/earth.hpp"
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/geometry.hpp"
 
 namespace altiplan::formats {
@@ -50,11 +52,10 @@ void add_arc(Ring& ring, const OutlineArc& arc, Chords chords) {
   }
 }
 
-/// Longitudes without a jump at the antimeridian.
-void unwrap(Ring& ring) {
-  for (std::size_t n = 1; n < ring.size(); ++n) {
-    ring[n][0] -= 360 * std::round((ring[n][0] - ring[n - 1][0]) / 360);
-  }
+bool has_arcs(const Outline& outline) {
+  return std::any_of(outline.begin(), outline.end(), [](const OutlinePart& part) {
+    return std::holds_alternative<OutlineArc>(part);
+  });
 }
 
 template <class ChordsOf>
@@ -67,8 +68,8 @@ Ring ring_of(const Outline& outline, const ChordsOf& chords_of) {
       ring.push_back(std::get<Point2>(part));
     }
   }
-  unwrap(ring);
-  return without_repeats(ring);
+  ring = without_repeats(ring);
+  return has_arcs(outline) ? continuous(ring) : unfolded(ring);
 }
 
 bool is_clockwise(const Ring& ring) {
@@ -253,11 +254,6 @@ Outline without_gaps(const Outline& outline, double reach, Keep keep) {
   return kept;
 }
 
-bool has_arcs(const Outline& outline) {
-  return std::any_of(outline.begin(), outline.end(), [](const OutlinePart& part) {
-    return std::holds_alternative<OutlineArc>(part);
-  });
-}
 }  // namespace
 
 void expect_lonlat(const Point2& p) {
@@ -330,8 +326,7 @@ Ring circle_ring(const Point2& centre, double radius_m, bool within) {
   for (int n = 0; n < steps; ++n) {
     ring.push_back(geodesic_end(centre, 360.0 * n / steps, distance));
   }
-  unwrap(ring);
-  return ring;
+  return continuous(ring);
 }
 
 void cut_holes(Polygon& polygon, const std::vector<Ring>& holes, const std::string& zone,
@@ -339,7 +334,7 @@ void cut_holes(Polygon& polygon, const std::vector<Ring>& holes, const std::stri
   for (const Ring& hole : holes) {
     Polygon with = polygon;
     with.holes.push_back(without_repeats(hole));
-    unwrap(with.holes.back());
+    with = unfolded(std::move(with));
     if (polygon_problem(with).empty()) {
       polygon = std::move(with);
     } else {

@@ -44,15 +44,6 @@ struct OutlineArc {
 using OutlinePart = std::variant<Point2, OutlineArc>;
 using Outline = std::vector<OutlinePart>;
 
-/// Where a position and bearing lead on the WGS 84 ellipsoid (Vincenty's direct formula), and the
-/// distance and bearing between two positions.
-Point2 geodesic_end(const Point2& from, double bearing_deg, double metres);
-struct GeodesicCourse {
-  double metres;
-  double bearing_deg;
-};
-GeodesicCourse geodesic_course(const Point2& from, const Point2& to);
-
 /// Each throws Error: unless it is a position, a radius up to 1000 km, a bearing.
 void expect_lonlat(const Point2& p);
 void expect_radius(double metres);

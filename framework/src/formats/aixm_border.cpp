@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "aixm_surface.hpp"
+#include "altiplan/earth.hpp"
 #include "altiplan/geometry.hpp"
 
 namespace altiplan::formats {
@@ -16,21 +17,24 @@ double along(const std::vector<Point2>& border, const Point2& p) {
   const double east = std::cos(radians(p[1]));
   double best = kInfinity;
   double result = 0;
+  Point2 nearest = p;
   for (std::size_t n = 0; n + 1 < border.size(); ++n) {
-    const double dx = (border[n + 1][0] - border[n][0]) * east;
+    const double first = longitude_near(border[n][0], p[0]);
+    const double dx = longitude_near(border[n + 1][0], first) - first;
     const double dy = border[n + 1][1] - border[n][1];
-    const double ox = (p[0] - border[n][0]) * east;
+    const double ox = p[0] - first;
     const double oy = p[1] - border[n][1];
-    const double length2 = dx * dx + dy * dy;
-    const double share = length2 > 0 ? std::clamp((ox * dx + oy * dy) / length2, 0.0, 1.0) : 0;
-    const double off = std::hypot(ox - share * dx, oy - share * dy);
+    const double length2 = dx * dx * east * east + dy * dy;
+    const double along = ox * dx * east * east + oy * dy;
+    const double share = length2 > 0 ? std::clamp(along / length2, 0.0, 1.0) : 0;
+    const double off = std::hypot((ox - share * dx) * east, oy - share * dy);
     if (off < best) {
       best = off;
       result = double(n) + share;
+      nearest = {first + share * dx, border[n][1] + share * dy};
     }
   }
-  constexpr double kMetresPerDegree = 111000;
-  if (!(best * kMetresPerDegree <= kNearBorder)) {
+  if (!(geodesic_course(p, nearest).metres <= kNearBorder)) {
     throw Error("expected curves that begin and end within 2 km of the border beside them");
   }
   return result;

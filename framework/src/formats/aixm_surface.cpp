@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "altiplan/earth.hpp"
 #include "altiplan/geometry.hpp"
 
 namespace altiplan::formats {
@@ -122,8 +123,13 @@ OutlineArc arc_of(const XmlNode& segment) {
 /// follow it.
 void add_geodesic(const Point2& p, const Point2& q, Outline& to) {
   const GeodesicCourse course = geodesic_course(p, q);
+  constexpr double kOpposite = 19'900'000;  // metres: half of the Earth is 20,004 km or more
+  if (course.metres > kOpposite) {
+    throw Error("expected a geodesic between places that are not opposite to each other, found " +
+                std::to_string(course.metres / 1000) + " km: it may run in any direction");
+  }
   const Point2 middle = geodesic_end(p, course.bearing_deg, course.metres / 2);
-  const Point2 straight{p[0] + std::remainder(q[0] - p[0], 360) / 2, (p[1] + q[1]) / 2};
+  const Point2 straight{(p[0] + longitude_near(q[0], p[0])) / 2, (p[1] + q[1]) / 2};
   if (geodesic_course(middle, straight).metres <= kStraight || course.metres > kLongEdge) {
     return;
   }

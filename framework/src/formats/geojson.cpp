@@ -8,6 +8,7 @@
 #include <set>
 
 #include "altiplan/error.hpp"
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/input_file.hpp"
 #include "text_file.hpp"
 
@@ -57,6 +58,7 @@ std::optional<Polygon> read_polygon(const Json& rings) {
       polygon.holes.push_back(std::move(ring));
     }
   }
+  polygon = unfolded(std::move(polygon));
   if (is_flat(polygon)) {
     return std::nullopt;
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/input_file.hpp"
 #include "altiplan/geometry.hpp"
 #include "mission_parts.hpp"
@@ -150,6 +151,7 @@ void check_volume(ZoneVolume& volume) {
   for (Ring& hole : volume.polygon.holes) {
     hole = without_repeats(hole);
   }
+  volume.polygon = unfolded(std::move(volume.polygon));
   if (const std::string problem = polygon_problem(volume.polygon); !problem.empty()) {
     throw Error(problem);
   }

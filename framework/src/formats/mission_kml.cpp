@@ -2,6 +2,7 @@
 #include <map>
 #include <vector>
 
+#include "altiplan/formats/earth_polygon.hpp"
 #include "xml_parts.hpp"
 
 namespace altiplan::formats {
@@ -184,7 +185,7 @@ class KmlReader {
     if (!has_outline) {
       throw Error("the Polygon has no outerBoundaryIs");
     }
-    if (is_flat(volume.polygon)) {
+    if (is_flat(unfolded(volume.polygon))) {
       mission_.flat.push_back(zone.name.empty() ? "a Polygon without a name" : zone.name);
       return;
     }

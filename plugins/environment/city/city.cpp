@@ -63,8 +63,9 @@ struct Params {
     f("origin_m", origin_m)
         .unit("m")
         .doc(
-            "the point [x, y] in a CityJSON file's metres that becomes (0, 0) here; default: the "
-            "south-west corner of its buildings");
+            "the point [x, y] in a CityJSON file's metres that becomes (0, 0) here; default: its "
+            "coordinate system tells, or in a world without a frame the south-west corner of its "
+            "buildings");
     f("attribution", attribution)
         .doc(
             "source to credit in pictures of the city, such as '© OpenStreetMap contributors, "
@@ -127,7 +128,7 @@ class City final : public Environment {
     const std::string& file = params.file->text;
     Buildings buildings =
         std::filesystem::path(file).extension() == ".csv" ? read_colliders(file, site)
-        : is_city_json(file)                              ? read_city_json(file, params.origin_m)
+        : is_city_json(file)                              ? read_city_json(file, params.origin_m, site)
                              : read_footprints(file, params.heights, params.base_m, site);
     std::vector<Shape> shapes;
     for (Building& building : buildings.list) {

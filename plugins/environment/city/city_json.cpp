@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by index.
+// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by index; and CityJSONSeq,
+// a line with the metadata, then a line with the vertices of each feature.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/input_file.hpp"
 #include "altiplan/formats/polygon.hpp"
+#include "altiplan/map_system.hpp"
 #include "buildings.hpp"
 
 namespace altiplan::city {
@@ -42,16 +45,16 @@ using Face = std::vector<std::vector<Vec3>>;
 struct Model {
   std::vector<Vec3> vertices;
 
-  explicit Model(const Json& json) {
+  Model(const Json& header, const Json& feature) {
     Vec3 scale(1, 1, 1);
     Vec3 translate(0, 0, 0);
-    if (json.contains("transform")) {
+    if (header.contains("transform")) {
       for (int axis = 0; axis < 3; ++axis) {
-        scale[axis] = json["transform"].at("scale").at(std::size_t(axis)).get<double>();
-        translate[axis] = json["transform"].at("translate").at(std::size_t(axis)).get<double>();
+        scale[axis] = header["transform"].at("scale").at(std::size_t(axis)).get<double>();
+        translate[axis] = header["transform"].at("translate").at(std::size_t(axis)).get<double>();
       }
     }
-    for (const Json& vertex : json.at("vertices").get_ref<const Json::array_t&>()) {
+    for (const Json& vertex : feature.at("vertices").get_ref<const Json::array_t&>()) {
       const Vec3 v(vertex.at(0).get<double>(), vertex.at(1).get<double>(),
                    vertex.at(2).get<double>());
       vertices.push_back(translate + scale.cwiseProduct(v));
@@ -233,28 +236,181 @@ void add_object(const Model& model, const std::string& name, const Json& object,
 }
 }  // namespace
 
+
+namespace {
+
+/// The metadata, and what holds objects and their vertices: the same, or each line of CityJSONSeq.
+struct Documents {
+  Json header;
+  std::vector<Json> features;
+
+  const Json& feature(std::size_t n) const { return features.empty() ? header : features[n]; }
+  std::size_t count() const { return std::max<std::size_t>(features.size(), 1); }
+};
+
+bool is_sequence(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  return end != text.npos && text.find("\"CityJSONFeature\"", end) != text.npos &&
+         Json::accept(text.substr(0, end));
+}
+
+Documents documents_of(const std::string& file, const std::string& text) {
+  if (!is_sequence(text)) {
+    return {parse(file, text), {}};
+  }
+  Documents all;
+  std::size_t line = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string one = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (one.find_first_not_of(" \t\r") == one.npos) {
+      continue;
+    }
+    if (line > 0 && !Json::accept(one)) {
+      throw Error(file + ": line " + std::to_string(line + 1) + " is not valid JSON");
+    }
+    Json json = parse(file, one);
+    if (line == 0) {
+      all.header = std::move(json);
+    } else if (json.is_object() && json.value("type", Json()) == "CityJSONFeature") {
+      all.features.push_back(std::move(json));
+    } else {
+      throw Error(file + ": line " + std::to_string(line + 1) + ": expected a CityJSONFeature");
+    }
+  }
+  return all;
+}
+
+/// "EPSG:7415" of "https://www.opengis.net/def/crs/EPSG/0/7415" and "urn:ogc:def:crs:EPSG::7415".
+std::string definition_of(const std::string& reference) {
+  const std::size_t digits = reference.find_last_not_of("0123456789") + 1;
+  const bool is_compound = reference.find(",crs:") != reference.npos;
+  return is_compound || reference.find("EPSG") == reference.npos || digits >= reference.size()
+             ? reference
+             : "EPSG:" + reference.substr(digits);
+}
+
+std::optional<MapSystem> system_of(const Json& header) {
+  if (!header.contains("metadata") || !header["metadata"].contains("referenceSystem")) {
+    return std::nullopt;
+  }
+  return MapSystem(definition_of(header["metadata"]["referenceSystem"].get<std::string>()));
+}
+
+/// A file without a coordinate system whose coordinates are stored more finely than a hundredth of
+/// a millimetre, and are longitudes and latitudes if these are any.
+void expect_metres(const Json& header, const std::vector<Model>& models) {
+  constexpr double kFine = 1e-5;
+  const bool is_fine = header.contains("transform") &&
+                       header["transform"].at("scale").at(0).get<double>() < kFine;
+  const auto is_place = [](const Vec3& v) { return std::abs(v.x()) <= 180 && std::abs(v.y()) <= 90; };
+  if (is_fine && std::all_of(models.begin(), models.end(), [&](const Model& model) {
+        return std::all_of(model.vertices.begin(), model.vertices.end(), is_place);
+      })) {
+    throw Error(
+        "names no coordinate system (metadata.referenceSystem), and its coordinates look like "
+        "longitude and latitude: expected the system, or metres");
+  }
+}
+
+/// Brings vertices to local metres above sea level, or to metres of the file's own axes and heights
+/// where the world has no frame.
+class Placing {
+ public:
+  Placing(const std::optional<MapSystem>& system, bool has_origin, const Site& site)
+      : system_(system), is_own_(has_origin) {
+    if (!has_origin && site.frame.has_position()) {
+      frame_ = site.frame;
+      to_sea_level_ = true;
+    }
+  }
+
+  bool is_in_frame() const { return frame_.has_position() && system_.has_value(); }
+  std::string note() const {
+    return "in " + system_->name() + (to_sea_level_ ? ", " + system_->heights() : ", heights as given");
+  }
+
+  /// Returns the frame that a file in degrees defines for the world.
+  std::optional<Frame> place(std::vector<Model>& models) {
+    if (!system_) {
+      return std::nullopt;
+    }
+    const bool defines = !frame_.has_position() && system_->unit_m() == 0;
+    if (defines) {
+      if (is_own_) {
+        throw Error("is in degrees (" + system_->name() + "), where origin_m has no meaning");
+      }
+      std::vector<formats::Point2> places;
+      for (const Model& model : models) {
+        for (const Vec3& v : model.vertices) {
+          const auto at = system_->to_wgs84({v.x(), v.y(), v.z()});
+          places.push_back({at[0], at[1]});
+        }
+      }
+      frame_ = formats::frame_around(places);
+    }
+    for (Model& model : models) {
+      for (Vec3& v : model.vertices) {
+        const auto [lon, lat, z] = system_->to_wgs84({v.x(), v.y(), v.z()});
+        const double zero = to_sea_level_ ? 0 : system_->to_wgs84({v.x(), v.y(), 0})[2];
+        v *= system_->unit_m();
+        if (frame_.has_position()) {
+          const auto local = frame_.to_local(lon, lat);
+          v.head<2>() = Eigen::Vector2d(local[0], local[1]);
+        }
+        v.z() = z - zero;
+      }
+    }
+    return defines ? std::optional(frame_) : std::nullopt;
+  }
+
+ private:
+  const std::optional<MapSystem>& system_;
+  bool is_own_;
+  bool to_sea_level_ = false;
+  Frame frame_;
+};
+}  // namespace
+
 bool is_city_json(const std::string& file) {
   const std::string text = formats::read_file(file, kAnySize);
   if (text.find("CityJSON") == text.npos) {
     return false;  // other files are parsed only by their own readers
   }
-  const Json json = parse(file, text);
+  const Json json = documents_of(file, text).header;
   return json.is_object() && json.contains("type") && json["type"] == "CityJSON";
 }
 
 Buildings read_city_json(const std::string& file,
-                         const std::optional<std::array<double, 2>>& origin_m) {
-  const Json json = parse(file, formats::read_file(file, kAnySize));
+                         const std::optional<std::array<double, 2>>& origin_m, const Site& site) {
+  const Documents documents = documents_of(file, formats::read_file(file, kAnySize));
   Buildings buildings;
   std::size_t others = 0;
   std::string at = "it";
+  std::optional<MapSystem> system;
+  std::string note;
+  bool is_placed = false;
   try {
-    const Model model(json);
-    for (const auto& [name, object] : json.at("CityObjects").items()) {
-      at = "'" + name + "'";
-      const std::size_t before = buildings.list.size();
-      add_object(model, name, object, buildings);
-      others += buildings.list.size() == before;
+    system = system_of(documents.header);
+    std::vector<Model> models;
+    for (std::size_t n = 0; n < documents.count(); ++n) {
+      models.emplace_back(documents.header, documents.feature(n));
+    }
+    if (!system) {
+      expect_metres(documents.header, models);
+    }
+    Placing placing(system, origin_m.has_value(), site);
+    buildings.frame = placing.place(models);
+    is_placed = placing.is_in_frame();
+    note = system ? placing.note() : "";
+    for (std::size_t n = 0; n < documents.count(); ++n) {
+      for (const auto& [name, object] : documents.feature(n).at("CityObjects").items()) {
+        at = "'" + name + "'";
+        const std::size_t before = buildings.list.size();
+        add_object(models[n], name, object, buildings);
+        others += buildings.list.size() == before;
+      }
     }
   } catch (const Json::exception& error) {
     const std::string why = error.what();  // "[json.exception.type_error.302] type must be …"
@@ -266,18 +422,24 @@ Buildings read_city_json(const std::string& file,
   if (buildings.list.empty()) {
     throw Error(file + ": contains no building with a geometry");
   }
-  Vec3 low = bounds(buildings.list.front().shape).min;
-  for (const Building& building : buildings.list) {
-    low = low.cwiseMin(bounds(building.shape).min);
-  }
-  const std::array<double, 2> origin = origin_m.value_or(std::array<double, 2>{low.x(), low.y()});
-  for (Building& building : buildings.list) {
-    building.shape = moved(building.shape, {-origin[0], -origin[1], 0});
-  }
   buildings.notes = {std::to_string(buildings.list.size()) + " prisms, " + std::to_string(others) +
-                         " objects without a geometry of their own, or no buildings, skipped",
-                     "origin at " + std::to_string(origin[0]) + ", " + std::to_string(origin[1]) +
-                         " of the file's metres"};
+                     " objects without a geometry of their own, or no buildings, skipped"};
+  if (system) {
+    buildings.notes.push_back(note);
+  }
+  if (!is_placed) {
+    Vec3 low = bounds(buildings.list.front().shape).min;
+    for (const Building& building : buildings.list) {
+      low = low.cwiseMin(bounds(building.shape).min);
+    }
+    const std::array<double, 2> origin =
+        origin_m.value_or(std::array<double, 2>{low.x(), low.y()});
+    for (Building& building : buildings.list) {
+      building.shape = moved(building.shape, {-origin[0], -origin[1], 0});
+    }
+    buildings.notes.push_back("origin at " + std::to_string(origin[0]) + ", " +
+                              std::to_string(origin[1]) + " of the file's metres");
+  }
   return buildings;
 }
 }  // namespace altiplan::city

@@ -88,7 +88,7 @@ Buildings read_colliders(const std::string& file, const Site& site) {
   if (site.frame.has_position()) {
     home = site.frame.to_local(lon, lat);
   } else {
-    buildings.frame = Frame::geographic(lon, lat, lat);
+    buildings.frame = Frame::local({lon, lat});
   }
   while (next()) {
     if (is_blank(line)) {

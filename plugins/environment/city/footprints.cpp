@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/geojson.hpp"
 #include "altiplan/world.hpp"
 #include "buildings.hpp"
@@ -52,24 +53,13 @@ class HeightRule {
 };
 
 /// The origin is the buildings' south-west corner.
-Frame frame_around(const formats::GeoJson& json) {
-  std::array<double, 2> low{180, 90};
-  double north = -90;
+Frame frame_of(const formats::GeoJson& json) {
+  std::vector<formats::Point2> corners;
   for (const formats::GeoFeature& feature : json.features) {
-    for (const formats::Point2& p : feature.polygon.outline) {
-      low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
-      north = std::max(north, p[1]);
-    }
+    const formats::Ring& outline = feature.polygon.outline;
+    corners.insert(corners.end(), outline.begin(), outline.end());
   }
-  return Frame::geographic(low[0], low[1], (low[1] + north) / 2);
-}
-
-formats::Ring local(const formats::Ring& lonlat, const Frame& frame) {
-  formats::Ring ring;
-  for (const formats::Point2& p : lonlat) {
-    ring.push_back(frame.to_local(p[0], p[1]));
-  }
-  return ring;
+  return formats::frame_around(corners);
 }
 
 /// Lowest and highest ground at the outline's corners.
@@ -95,20 +85,18 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
   Buildings buildings;
   Frame frame = site.frame;
   if (!frame.has_position()) {
-    frame = frame_around(json);
+    frame = frame_of(json);
     buildings.frame = frame;
   }
   HeightRule rule(heights);
   for (const formats::GeoFeature& feature : json.features) {
     try {
-      Prism prism{local(feature.polygon.outline, frame), {}, 0, 0};
-      for (const formats::Ring& hole : feature.polygon.holes) {
-        prism.holes.push_back(local(hole, frame));
+      const double height = rule.height(feature);
+      for (formats::Polygon& part : formats::in_frame(feature.polygon, frame)) {
+        const auto [low, high] = ground_below(part.outline, *site.before, base_m);
+        buildings.list.push_back(
+            {feature.id, Prism{std::move(part.outline), std::move(part.holes), low, high + height}});
       }
-      const auto [low, high] = ground_below(prism.outline, *site.before, base_m);
-      prism.floor = low;
-      prism.ceiling = high + rule.height(feature);
-      buildings.list.push_back({feature.id, std::move(prism)});
     } catch (const Error& error) {
       throw Error(file + ": '" + feature.id + "': " + error.what());
     }

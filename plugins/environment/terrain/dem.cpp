@@ -174,19 +174,18 @@ void read_crs(const Params& params, void* dataset, Dem& dem) {
   dem.unit_m = dem.geographic ? 1 : api().OSRGetLinearUnits(dem.crs.get(), nullptr);
 }
 
-/// Refuses heights that are not above sea level.
+/// Refuses depths; heights above the ellipsoid are brought to sea level.
 void read_datum(const Params& params, Dem& dem) {
   const char* name = api().OSRGetAttrValue(dem.crs.get(), "VERT_CS", 0);
   dem.datum = name != nullptr ? name : "";
   std::string words = dem.datum;
   std::transform(words.begin(), words.end(), words.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
-  for (const char* other : {"ellips", "depth"}) {
-    if (words.find(other) != std::string::npos) {
-      refuse(params, "expected heights above sea level, found '" + dem.datum +
-                         "': convert them (gdalwarp -t_srs EPSG:4326+5773)");
-    }
+  if (words.find("depth") != std::string::npos) {
+    refuse(params, "expected heights, found '" + dem.datum + "'");
   }
+  dem.above_ellipsoid = words.find("ellips") != std::string::npos ||
+                        (name == nullptr && api().OSRGetAxesCount(dem.crs.get()) == 3);
 }
 
 // Places the posts at the cells' centres; returns true if the file's rows run from the north.
@@ -218,8 +217,11 @@ bool read_position(const Params& params, void* dataset, Dem& dem) {
   return from_north;
 }
 
-double metres_per_unit(const Params& params, void* band) {
-  std::string unit = api().GDALGetRasterUnitType(band);
+double metres_per_unit(const Params& params, const Dem& dem) {
+  std::string unit = api().GDALGetRasterUnitType(dem.band);
+  if (unit.empty() && !dem.datum.empty()) {
+    return api().OSRGetTargetLinearUnits(dem.crs.get(), "VERT_CS", nullptr);
+  }
   std::transform(unit.begin(), unit.end(), unit.begin(),
                  [](unsigned char c) { return char(std::tolower(c)); });
   const auto is = [&](std::initializer_list<const char*> names) {
@@ -247,7 +249,7 @@ void read_meaning(const Params& params, Dem& dem) {
   dem.nodata = {has_nodata ? float(nodata) : NAN, params.nodata ? float(*params.nodata) : NAN};
   dem.scale = has_scale ? scale : 1;
   dem.offset = has_offset ? offset : 0;
-  dem.unit = metres_per_unit(params, dem.band);
+  dem.unit = metres_per_unit(params, dem);
 }
 }  // namespace
 

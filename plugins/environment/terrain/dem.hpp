@@ -67,6 +67,7 @@ struct Dem {
   std::string crs_name;
   std::string crs_code;     ///< "EPSG:32632", "" if the file gives none
   std::string datum;        ///< of the heights: "EGM96 height", "" if the file names none
+  bool above_ellipsoid = false;  ///< in the file: read_posts brings heights to sea level
   bool geographic = false;  ///< degrees; otherwise lengths of `unit_m`
   double unit_m = 1;
 

@@ -66,6 +66,8 @@ struct Api {
   X(OSRGetName)                         \
   X(OSRGetAuthorityCode)                \
   X(OSRGetAttrValue)                    \
+  X(OSRGetAxesCount)                    \
+  X(OSRGetTargetLinearUnits)            \
   X(OCTNewCoordinateTransformation)     \
   X(OCTDestroyCoordinateTransformation) \
   X(OCTTransform)

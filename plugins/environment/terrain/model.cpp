@@ -47,7 +47,10 @@ std::array<int, 2> blocks_about(double low, double high, double origin, double s
 Part part_about(const Dem& dem, const Layout& layout, const altiplan::Site& site) {
   constexpr std::int64_t kFew = 4'000'000;  // read almost instantly
   const std::int64_t all = std::int64_t(dem.columns) * dem.rows;
-  if (all <= kFew || layout.resampled || !is_bounded(site.volume) ||
+  if (layout.resampled) {
+    return layout.needed;
+  }
+  if (all <= kFew || !is_bounded(site.volume) ||
       (site.before != nullptr &&
        may_join(layout.origin, layout.spacing, layout.columns, layout.rows, *site.before))) {
     return dem.whole();
@@ -86,7 +89,7 @@ Box covered_by(const HeightField& field, const Layout& layout) {
 
 Model::Model(const Params& params, const altiplan::Site& site)
     : params_(params),
-      dem_(read_dem(params, is_bounded(site.volume))),
+      dem_(read_dem(params, is_bounded(site.volume) || !site.about.empty())),
       layout_(layout_of(dem_, site, params)),
       field_(read(part_about(dem_, layout_, site))),
       covered_(covered_by(field_, layout_)) {
@@ -108,7 +111,7 @@ HeightField Model::read(const Part& part) {
     return {layout_.origin, layout_.spacing, posts.part, std::move(posts.heights)};
   }
   return {layout_.origin, layout_.spacing, layout_.columns, layout_.rows,
-          resample(dem_, layout_, posts.heights)};
+          resample(dem_, layout_, posts)};
 }
 
 HeightField Model::read_whole() const {

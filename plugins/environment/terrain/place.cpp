@@ -8,14 +8,17 @@
 #include <optional>
 #include <vector>
 
+#include "altiplan/earth.hpp"
 #include "altiplan/error.hpp"
-#include "altiplan/kit/layers/utm.hpp"
+#include "altiplan/map_system.hpp"
 
 namespace terrain {
 namespace {
 
+using altiplan::Box;
 using altiplan::Frame;
 using altiplan::ParameterError;
+using altiplan::Vec3;
 using XY = std::array<double, 2>;
 
 /// Between a coordinate system (x, y in its own units) and WGS 84. GDAL's transformations serve one
@@ -46,23 +49,52 @@ class ToWgs84 {
   std::optional<gdal::Transform> back_;
 };
 
+/// The width of a map of the whole Earth whose east side is its west side, in its units, by a walk
+/// around the Earth at a latitude; 0 for other maps.
+double width_of(const ToWgs84& map, double lat) try {
+  constexpr int kSteps = 36;
+  double jump = 0;
+  double width = 0;
+  XY before = map.native(-180, lat);
+  for (int n = 1; n <= kSteps; ++n) {
+    const XY p = map.native(-180 + 360.0 * n / kSteps, lat);
+    const double step = p[0] - before[0];
+    if (step < 0 && jump != 0) {
+      return 0;
+    }
+    jump = step < 0 ? step : jump;
+    width += step < 0 ? 0 : step;
+    before = p;
+  }
+  return jump == 0 ? width : -jump * kSteps / (kSteps - 1);
+} catch (const altiplan::Error&) {
+  return 0;
+}
+
 /// The axes of a projected system, with a separate origin and in metres.
 class MapProjection final : public altiplan::Projection {
  public:
-  MapProjection(std::shared_ptr<const ToWgs84> map, const XY& origin, double unit_m)
-      : map_(std::move(map)), origin_(origin), unit_m_(unit_m) {}
+  /// `unit_m`: metres for one of the system's units along each axis.
+  MapProjection(std::shared_ptr<const ToWgs84> map, const XY& origin, const XY& unit_m)
+      : map_(std::move(map)), origin_(origin), unit_m_(unit_m) {
+    width_ = width_of(*map_, map_->lonlat(origin)[1]);
+  }
   XY to_local(double lon, double lat) const override {
-    const XY p = map_->native(lon, lat);
-    return {(p[0] - origin_[0]) * unit_m_, (p[1] - origin_[1]) * unit_m_};
+    XY p = map_->native(lon, lat);
+    if (width_ > 0) {
+      p[0] -= width_ * std::round((p[0] - origin_[0]) / width_);
+    }
+    return {(p[0] - origin_[0]) * unit_m_[0], (p[1] - origin_[1]) * unit_m_[1]};
   }
   XY to_lonlat(double x, double y) const override {
-    return map_->lonlat({origin_[0] + x / unit_m_, origin_[1] + y / unit_m_});
+    return map_->lonlat({origin_[0] + x / unit_m_[0], origin_[1] + y / unit_m_[1]});
   }
 
  private:
   std::shared_ptr<const ToWgs84> map_;
   XY origin_;
-  double unit_m_;
+  XY unit_m_;
+  double width_ = 0;
 };
 
 XY middle_of(const Dem& dem) {
@@ -80,7 +112,13 @@ XY datum_shift(const Dem& dem) {
   return {there[0] - middle[0], there[1] - middle[1]};
 }
 
-Layout in_own_frame(const Dem& dem) {
+/// The model's own axes, true to scale at a latitude or by factors.
+struct OwnScale {
+  double lat;
+  XY factors;
+};
+
+Layout in_own_frame(const Dem& dem, const std::optional<OwnScale>& scale = {}) {
   Frame frame;
   XY spacing;
   if (dem.geographic) {
@@ -88,16 +126,18 @@ Layout in_own_frame(const Dem& dem) {
     const double lon = dem.south_west[0] + shift[0];
     const double lat = dem.south_west[1] + shift[1];
     const double height_deg = (dem.rows - 1) * dem.step[1];
-    frame = Frame::geographic(lon, lat, lat + height_deg / 2);
+    frame = Frame::geographic(lon, lat, scale ? scale->lat : lat + height_deg / 2);
     // By the spacing of one post: a model may span more than half of the Earth.
     spacing = frame.to_local(lon + dem.step[0], lat + dem.step[1]);
   } else {
-    frame = Frame::projected(std::make_shared<MapProjection>(std::make_shared<ToWgs84>(dem.crs),
-                                                             dem.south_west, dem.unit_m),
-                             dem.crs_name);
-    spacing = {dem.step[0] * dem.unit_m, dem.step[1] * dem.unit_m};
+    const XY factors = scale ? scale->factors : XY{1, 1};
+    const XY unit_m{dem.unit_m * factors[0], dem.unit_m * factors[1]};
+    frame = Frame::projected(
+        std::make_shared<MapProjection>(std::make_shared<ToWgs84>(dem.crs), dem.south_west, unit_m),
+        dem.crs_name + (scale ? ", scaled by " + number(factors[0]) : ""));
+    spacing = {dem.step[0] * unit_m[0], dem.step[1] * unit_m[1]};
   }
-  return {frame, {0, 0}, spacing, dem.columns, dem.rows, false};
+  return {frame, {0, 0}, spacing, dem.columns, dem.rows, false, {}};
 }
 
 /// The model as seen from a frame: posts are (column, row) from the south-west, as fractions.
@@ -112,21 +152,17 @@ class View {
   }
   XY post(double x, double y) const {
     const XY lonlat = frame_.to_lonlat(x, y);
-    const XY p = map_.native(lonlat[0], lonlat[1]);
+    XY p = map_.native(lonlat[0], lonlat[1]);
+    if (dem_.geographic) {
+      p[0] = altiplan::longitude_near(p[0], middle_of(dem_)[0]);
+    }
     return {(p[0] - dem_.south_west[0]) / dem_.step[0], (p[1] - dem_.south_west[1]) / dem_.step[1]};
   }
-  /// Bilinear; positions that rounding puts beyond the last post belong to it. `heights` are those
-  /// of the whole model.
-  float height(const std::vector<float>& heights, const XY& post) const {
-    const double u = std::clamp(post[0], 0.0, double(dem_.columns - 1));
-    const double v = std::clamp(post[1], 0.0, double(dem_.rows - 1));
-    const int i = std::min(int(u), dem_.columns - 2);
-    const int j = std::min(int(v), dem_.rows - 2);
-    const float* h = heights.data() + std::size_t(j) * std::size_t(dem_.columns) + i;
-    const double s = u - i;
-    const double w = v - j;
-    return float((1 - w) * ((1 - s) * h[0] + s * h[1]) +
-                 w * ((1 - s) * h[dem_.columns] + s * h[dem_.columns + 1]));
+  bool covers(double x, double y) const try {
+    const XY at = post(x, y);
+    return at[0] >= 0 && at[0] <= dem_.columns - 1 && at[1] >= 0 && at[1] <= dem_.rows - 1;
+  } catch (const altiplan::Error&) {
+    return false;  // where its system is undefined
   }
 
  private:
@@ -158,8 +194,15 @@ Footprint footprint(const Dem& dem, const View& view) {
     print.high[1] = std::min(print.high[1], view.local(i, last_j)[1]);
   }
   const XY middle = view.local(last_i / 2, last_j / 2);
-  print.spacing = {std::abs(view.local(last_i / 2 + 1, last_j / 2)[0] - middle[0]),
-                   std::abs(view.local(last_i / 2, last_j / 2 + 1)[1] - middle[1])};
+  const XY column = view.local(last_i / 2 + 1, last_j / 2);
+  const XY row = view.local(last_i / 2, last_j / 2 + 1);
+  print.spacing = {std::abs(column[0] - middle[0]), std::abs(row[1] - middle[1])};
+  const double across = std::hypot(column[0] - middle[0], column[1] - middle[1]);
+  const double up = std::hypot(row[0] - middle[0], row[1] - middle[1]);
+  constexpr double kAskew = 0.8;  // the cosine of 37 degrees
+  if (print.spacing[0] < kAskew * across || print.spacing[1] < kAskew * up) {
+    print.spacing = {std::min(across, up), std::min(across, up)};
+  }
   const XY origin = view.local(0, 0);
   constexpr double kSame = 1e-4;  // metres: round-trip error of transformations
   for (const XY& share : {XY{0, 1}, XY{1, 0}, XY{1, 1}, XY{0.5, 0.5}, XY{0.25, 0.75}}) {
@@ -172,32 +215,144 @@ Footprint footprint(const Dem& dem, const View& view) {
   return print;
 }
 
-Layout in_frame(const Dem& dem, const Frame& frame, const Params& params) {
-  const Footprint print = footprint(dem, View(dem, frame));
-  const double width = print.high[0] - print.low[0];
-  const double height = print.high[1] - print.low[1];
-  if (!(width > 2 * print.spacing[0] && height > 2 * print.spacing[1])) {
-    throw ParameterError("file", params.file.text +
-                                     ": its rows are rotated too far from the axes of the "
-                                     "world's frame (" +
-                                     frame.crs() + ") to be resampled in it");
+/// How far from a mission the ground is of interest, metres.
+constexpr double kReach = 20'000;
+
+/// Horizontally, in the frame; all of it without positions.
+Box reach_of(const Frame& frame, const std::vector<altiplan::LonLat>& about, double metres) {
+  if (about.empty()) {
+    return {};
   }
-  if (print.is_grid) {
-    const XY spacing{width / (dem.columns - 1), height / (dem.rows - 1)};
-    return {frame, print.low, spacing, dem.columns, dem.rows, false};
+  Box box = Box::empty();
+  for (const auto& [lon, lat] : about) {
+    const XY p = frame.to_local(lon, lat);
+    box = box.with({p[0], p[1], 0});
   }
-  const double columns = std::floor(width / print.spacing[0]) + 1;
-  const double rows = std::floor(height / print.spacing[1]) + 1;
+  return box.grown(metres);
+}
+
+/// A rectangle along the frame's axes that the model covers, however its rows run: as far about the
+/// middle as it goes, then each side as far as it goes.
+Box rectangle_in(const View& view, const Vec3& middle, double reach) {
+  const auto is_covered = [&](const Box& box) {
+    constexpr int kPoints = 32;
+    for (int k = 0; k <= kPoints; ++k) {
+      const Vec3 at = box.min + (box.max - box.min) * k / kPoints;
+      if (!view.covers(at.x(), box.min.y()) || !view.covers(at.x(), box.max.y()) ||
+          !view.covers(box.min.x(), at.y()) || !view.covers(box.max.x(), at.y())) {
+        return false;
+      }
+    }
+    return true;
+  };
+  const auto longest = [&](double most, const auto& grown) {
+    double low = 0;
+    for (double high = most; high - low > 1e-3 * (1 + low);) {
+      const double length = (low + high) / 2;
+      (is_covered(grown(length)) ? low : high) = length;
+    }
+    return low;
+  };
+  const Box point{Vec3(middle.x(), middle.y(), 0), Vec3(middle.x(), middle.y(), 0)};
+  Box box = point.grown(longest(reach, [&](double by) { return point.grown(by); }));
+  for (int axis = 0; axis < 2; ++axis) {
+    for (Vec3 Box::*const side : {&Box::min, &Box::max}) {
+      const auto grown = [&](double by) {
+        Box larger = box;
+        (larger.*side)[axis] += side == &Box::min ? -by : by;
+        return larger;
+      };
+      box = grown(longest(reach, grown));
+    }
+  }
+  return box;
+}
+
+/// The model's own posts below the layout's.
+Part needed_for(const Dem& dem, const View& view, const Layout& layout) {
+  constexpr int kPoints = 64;
+  XY low{altiplan::kInfinity, altiplan::kInfinity};
+  XY high{-altiplan::kInfinity, -altiplan::kInfinity};
+  for (int i = 0; i <= kPoints; ++i) {
+    for (int j = 0; j <= kPoints; ++j) {
+      const XY at = view.post(
+          layout.origin[0] + (layout.columns - 1) * layout.spacing[0] * i / kPoints,
+          layout.origin[1] + (layout.rows - 1) * layout.spacing[1] * j / kPoints);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        low[axis] = std::min(low[axis], at[axis]);
+        high[axis] = std::max(high[axis], at[axis]);
+      }
+    }
+  }
+  // Between the points the model's rows bend by less than this.
+  const auto margin = [&](std::size_t axis) { return 2 + (high[axis] - low[axis]) / kPoints; };
+  const auto range = [&](std::size_t axis, int posts) {
+    const int first = int(std::clamp(low[axis] - margin(axis), 0.0, posts - 2.0));
+    const int last = int(std::clamp(high[axis] + margin(axis), first + 1.0, posts - 1.0));
+    return std::array<int, 2>{first, last - first + 1};
+  };
+  const auto [column, columns] = range(0, dem.columns);
+  const auto [row, rows] = range(1, dem.rows);
+  return {column, row, columns, rows};
+}
+
+Layout in_frame(const Dem& dem, const Frame& frame, const Params& params,
+                const std::vector<altiplan::LonLat>& about) {
+  const View view(dem, frame);
+  Footprint print = footprint(dem, view);
+  const auto is_empty = [](const Footprint& p) {
+    return !(p.high[0] - p.low[0] > 2 * p.spacing[0] && p.high[1] - p.low[1] > 2 * p.spacing[1]);
+  };
+  if (print.is_grid && !is_empty(print)) {
+    const XY spacing{(print.high[0] - print.low[0]) / (dem.columns - 1),
+                     (print.high[1] - print.low[1]) / (dem.rows - 1)};
+    return {frame, print.low, spacing, dem.columns, dem.rows, false, {}};
+  }
+  Box reach = reach_of(frame, about, kReach);
+  const Box whole{Vec3(print.low[0], print.low[1], 0), Vec3(print.high[0], print.high[1], 0)};
+  if (!is_empty(print) && whole.intersected(reach).is_empty()) {
+    reach = {};  // a tile beside the mission's
+  }
+  if (is_empty(print) || std::isfinite(reach.min.x())) {
+    Vec3 middle = (reach.min + reach.max) / 2;
+    if (!altiplan::is_finite(middle) || !view.covers(middle.x(), middle.y())) {
+      const XY at = view.local((dem.columns - 1) / 2.0, (dem.rows - 1) / 2.0);
+      middle = {at[0], at[1], 0};
+    }
+    const XY corner = view.local(0, 0);
+    const Box box = rectangle_in(view, middle,
+                                 2 * std::hypot(corner[0] - middle.x(), corner[1] - middle.y()));
+    print.low = {std::max(box.min.x(), reach.min.x()), std::max(box.min.y(), reach.min.y())};
+    print.high = {std::min(box.max.x(), reach.max.x()), std::min(box.max.y(), reach.max.y())};
+  }
+  if (is_empty(print)) {
+    throw ParameterError(
+        "file", params.file.text + ": covers no rectangle of the world's frame (" + frame.crs() +
+                    (about.empty() ? ")" : ") within 20 km of the mission"));
+  }
+  const double columns = std::floor((print.high[0] - print.low[0]) / print.spacing[0]) + 1;
+  const double rows = std::floor((print.high[1] - print.low[1]) / print.spacing[1]) + 1;
   if (columns * rows > double(params.max_posts)) {
     throw ParameterError("max_posts", params.file.text + ": would need more than max_posts (" +
                                           std::to_string(params.max_posts) +
                                           ") in the world's frame");
   }
-  return {frame, print.low, print.spacing, int(columns), int(rows), true};
+  Layout layout{frame, print.low, print.spacing, int(columns), int(rows), true, {}};
+  layout.needed = needed_for(dem, view, layout);
+  return layout;
 }
 
-/// The scenario's `frame: {crs: …}`, with its origin at the model's future south-west corner.
-Frame asked_frame(const Dem& dem, const std::string& crs) {
+/// The layout in a frame whose origin becomes its south-west corner.
+template <class FrameAt>
+Layout from_corner(const Dem& dem, const Params& params, const FrameAt& frame_at) {
+  const Frame far = frame_at(std::nullopt);
+  const Layout there = in_frame(dem, far, params, {});
+  Layout layout = in_frame(dem, frame_at(far.to_lonlat(there.origin[0], there.origin[1])), params, {});
+  return layout;
+}
+
+/// The scenario's `frame: {crs: …}`.
+Layout in_asked_frame(const Dem& dem, const Params& params, const std::string& crs) {
   const gdal::Reference reference = gdal::reference(crs);
   if (!reference || !gdal::api().OSRIsProjected(reference.get())) {
     throw altiplan::Error(
@@ -207,59 +362,179 @@ Frame asked_frame(const Dem& dem, const std::string& crs) {
   }
   const double unit_m = gdal::api().OSRGetLinearUnits(reference.get(), nullptr);
   const auto map = std::make_shared<ToWgs84>(reference);
-  const Frame at_zero =
-      Frame::projected(std::make_shared<MapProjection>(map, XY{0, 0}, unit_m), crs);
-  const Footprint print = footprint(dem, View(dem, at_zero));
-  const XY origin{print.low[0] / unit_m, print.low[1] / unit_m};
-  return Frame::projected(std::make_shared<MapProjection>(map, origin, unit_m), crs);
-}
-/// `crs: auto`: the zone of UTM that the model's middle lies in.
-std::string utm_of(const Dem& dem) {
-  const auto [lon, lat] = ToWgs84(dem.crs).lonlat(middle_of(dem));
-  return altiplan::kit::utm_crs(lon, lat);
+  return from_corner(dem, params, [&](const std::optional<altiplan::LonLat>& corner) {
+    const XY origin = corner ? map->native((*corner)[0], (*corner)[1]) : XY{0, 0};
+    return Frame::projected(std::make_shared<MapProjection>(map, origin, XY{unit_m, unit_m}), crs);
+  });
 }
 
-/// True for a projected model whose lengths are right in its own axes: warping would round summits.
-bool is_true_to_scale(const Dem& dem) {
-  constexpr double kMaxError = 0.005;
-  if (dem.geographic) {
-    return false;
+/// The part of the model within the box, in its own frame; all of it where that is none.
+Box area_of(const Dem& dem, const Layout& own, const Box& box) {
+  const Box all{Vec3(0, 0, 0), Vec3((dem.columns - 1) * own.spacing[0],
+                                    (dem.rows - 1) * own.spacing[1], 0)};
+  Box area = all.intersected(box);
+  area.min.z() = area.max.z() = 0;
+  return area.is_empty() ? all : area;
+}
+
+/// Metres on the ground for a metre of the frame there, along each axis.
+XY scale_at(const Frame& frame, double x, double y) {
+  constexpr double kStep = 10;
+  const auto along = [&](double dx, double dy) {
+    return altiplan::geodesic_course(frame.to_lonlat(x - dx, y - dy),
+                                     frame.to_lonlat(x + dx, y + dy))
+               .metres /
+           (2 * kStep);
+  };
+  return {along(kStep, 0), along(0, kStep)};
+}
+
+/// Of lengths, beyond which a model is resampled. That rounds summits, which is the worse the steeper
+/// the ground is.
+constexpr double kMaxError = 0.005;
+
+/// The middle of the positions, and how far it is from the model's.
+struct Judged {
+  altiplan::LonLat middle;
+  double metres;
+};
+Judged judged(const Dem& dem, const std::vector<altiplan::LonLat>& about) {
+  const Frame near = Frame::local(about.front());
+  const Box box = reach_of(near, about, 0);
+  const Vec3 middle = (box.min + box.max) / 2;
+  const altiplan::LonLat lonlat = near.to_lonlat(middle.x(), middle.y());
+  return {lonlat,
+          altiplan::geodesic_course(lonlat, ToWgs84(dem.crs).lonlat(middle_of(dem))).metres};
+}
+
+Layout in_local_frame(const Dem& dem, const Params& params, const altiplan::LonLat& middle) {
+  return from_corner(dem, params, [&](const std::optional<altiplan::LonLat>& corner) {
+    return Frame::local(middle, corner.value_or(middle));
+  });
+}
+
+/// The model's own axes, true to scale in the middle of the area, if that leaves them wrong by less.
+std::optional<Layout> in_scaled_frame(const Dem& dem, const Layout& own, const Box& area,
+                                      double max_error) {
+  const Vec3 middle = (area.min + area.max) / 2;
+  const XY lonlat = own.frame.to_lonlat(middle.x(), middle.y());
+  const Layout scaled =
+      in_own_frame(dem, OwnScale{lonlat[1], scale_at(own.frame, middle.x(), middle.y())});
+  const Vec3 by(scaled.spacing[0] / own.spacing[0], scaled.spacing[1] / own.spacing[1], 1);
+  const double error =
+      scaled.frame.scale_error({area.min.cwiseProduct(by), area.max.cwiseProduct(by)});
+  return error <= max_error ? std::optional(scaled) : std::nullopt;
+}
+
+/// The one rule of the frame that a model defines, about a mission.
+Layout in_frame_about(const Dem& dem, const altiplan::Site& site, const Params& params) {
+  constexpr double kMargin = 1000;     // metres that a mission may leave its positions
+  constexpr double kFar = 1'000'000;   // a mission elsewhere, which is told so
+  const Layout own = in_own_frame(dem);
+  const auto [middle, metres] = judged(dem, site.about);
+  if (!(metres < kFar)) {
+    return own;
+  }
+  const Box reach = reach_of(own.frame, site.about, kMargin);
+  const Box all = area_of(dem, own, {});
+  if (!all.intersected(reach).is_empty()) {
+    if (const auto scaled = in_scaled_frame(dem, own, reach, kMaxError)) {
+      return *scaled;
+    }
+  }
+  return in_frame(dem, Frame::local(middle), params, site.about);
+}
+
+/// The one rule of the frame that a model defines.
+Layout in_best_frame(const Dem& dem, const altiplan::Site& site, const Params& params) {
+  if (!site.about.empty()) {
+    return in_frame_about(dem, site, params);
   }
   const Layout own = in_own_frame(dem);
-  const altiplan::Vec3 size((dem.columns - 1) * own.spacing[0], (dem.rows - 1) * own.spacing[1], 0);
-  return own.frame.scale_error({altiplan::Vec3(0, 0, 0), size}) <= kMaxError;
+  if (own.frame.scale_error(area_of(dem, own, site.volume)) <= kMaxError) {
+    return own;
+  }
+  const Box all = area_of(dem, own, {});
+  if (const auto scaled = in_scaled_frame(dem, own, all, kMaxError)) {
+    return *scaled;
+  }
+  const Vec3 middle = (all.min + all.max) / 2;
+  return in_local_frame(dem, params, own.frame.to_lonlat(middle.x(), middle.y()));
 }
 }  // namespace
 
 Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params) {
   if (site.frame.has_position()) {
-    return in_frame(dem, site.frame, params);
+    return in_frame(dem, site.frame, params, site.about);
   }
-  const bool is_auto = site.frame_crs == "auto";
-  if (is_auto && is_true_to_scale(dem)) {
+  if (site.frame_crs.empty() || site.frame_crs == "auto") {
+    return in_best_frame(dem, site, params);
+  }
+  const gdal::Reference asked = gdal::reference(site.frame_crs);
+  if (asked && !dem.geographic && gdal::api().OSRIsSame(asked.get(), dem.crs.get())) {
     return in_own_frame(dem);
   }
-  const std::string crs = is_auto ? utm_of(dem) : site.frame_crs;
-  const gdal::Reference asked = gdal::reference(crs);
-  if (crs.empty() ||
-      (asked && !dem.geographic && gdal::api().OSRIsSame(asked.get(), dem.crs.get()))) {
-    return in_own_frame(dem);
-  }
-  return in_frame(dem, asked_frame(dem, crs), params);
+  return in_asked_frame(dem, params, site.frame_crs);
 }
 
-/// Exact positions are computed every kNet posts and interpolated between: over so few posts a
+namespace {
+
+/// Bilinear, between the posts of a part; positions that rounding puts beyond the last post belong
+/// to it.
+float height_at(const Posts& posts, const XY& post) {
+  const Part& part = posts.part;
+  const double u = std::clamp(post[0] - part.column, 0.0, double(part.columns - 1));
+  const double v = std::clamp(post[1] - part.row, 0.0, double(part.rows - 1));
+  const int i = std::min(int(u), part.columns - 2);
+  const int j = std::min(int(v), part.rows - 2);
+  const float* h = posts.heights.data() + std::size_t(j) * std::size_t(part.columns) + i;
+  const double s = u - i;
+  const double w = v - j;
+  return float((1 - w) * ((1 - s) * h[0] + s * h[1]) +
+               w * ((1 - s) * h[part.columns] + s * h[part.columns + 1]));
+}
+}  // namespace
+
+void bring_to_sea_level(const Dem& dem, Posts& posts) {
+  constexpr int kNet = 16;  // between such posts a projection is even
+  const ToWgs84 map(dem.crs);
+  const Part& part = posts.part;
+  const auto place = [&](int i, int j) {
+    return map.lonlat({dem.south_west[0] + (part.column + i) * dem.step[0],
+                       dem.south_west[1] + (part.row + j) * dem.step[1]});
+  };
+  for (int j = 0; j < part.rows; ++j) {
+    float* heights = posts.heights.data() + std::size_t(j) * std::size_t(part.columns);
+    XY first{};
+    XY step{};
+    for (int i = 0; i < part.columns; ++i) {
+      if (i % kNet == 0) {
+        first = place(i, j);
+        const XY next = place(i + kNet, j);
+        step = {(altiplan::longitude_near(next[0], first[0]) - first[0]) / kNet,
+                (next[1] - first[1]) / kNet};
+      }
+      heights[i] -= float(altiplan::geoid_height(first[0] + (i % kNet) * step[0],
+                                                 first[1] + (i % kNet) * step[1]));
+    }
+  }
+}
+
+/// Exact positions are computed every `net` posts and interpolated between: over so few posts a
 /// projection deviates by less than 0.001 of their spacing, and it costs a microsecond per point.
-std::vector<float> resample(const Dem& dem, const Layout& layout, const std::vector<float>& own) {
+std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& own) {
   const View view(dem, layout.frame);
-  constexpr int kNet = 16;
+  // Near a pole, longitudes run every way.
+  const double first_lat = dem.south_west[1];
+  const double last_lat = first_lat + (dem.rows - 1) * dem.step[1];
+  const int net = dem.geographic && std::max(-first_lat, last_lat) > 80 ? 1 : 16;
   const int columns = layout.columns;
   const int rows = layout.rows;
-  const int knots = (columns - 1) / kNet + 2;
+  const int knots = (columns - 1) / net + 2;
   const auto knot_row = [&](int j) {
     std::vector<XY> row;
     for (int k = 0; k < knots; ++k) {
-      row.push_back(view.post(layout.origin[0] + k * kNet * layout.spacing[0],
+      row.push_back(view.post(layout.origin[0] + k * net * layout.spacing[0],
                               layout.origin[1] + j * layout.spacing[1]));
     }
     return row;
@@ -272,16 +547,16 @@ std::vector<float> resample(const Dem& dem, const Layout& layout, const std::vec
   std::vector<XY> south;
   std::vector<XY> north = knot_row(0);
   for (int j = 0; j < rows; ++j) {
-    if (j % kNet == 0) {
+    if (j % net == 0) {
       south = std::move(north);
-      north = knot_row(j + kNet);
+      north = knot_row(j + net);
     }
     for (int i = 0; i < columns; ++i) {
-      const std::size_t k = std::size_t(i / kNet);
-      const double share = double(i % kNet) / kNet;
-      heights.push_back(view.height(
+      const std::size_t k = std::size_t(i / net);
+      const double share = double(i % net) / net;
+      heights.push_back(height_at(
           own, between(between(south[k], south[k + 1], share),
-                       between(north[k], north[k + 1], share), double(j % kNet) / kNet)));
+                       between(north[k], north[k + 1], share), double(j % net) / net)));
     }
   }
   return heights;

@@ -16,14 +16,22 @@ struct Layout {
   int columns = 0;
   int rows = 0;
   bool resampled = false;  ///< the posts are not the model's own
+  Part needed;             ///< of the model's own posts, if these are resampled
 };
 
 /// If the world has a frame, or the scenario requests one, the posts are transformed into it;
-/// otherwise the model's own becomes the world's. Posts that remain a grid along the frame's axes
-/// are kept unchanged; others are resampled (bilinear) on a grid of the same spacing, over the
-/// largest rectangle that the model covers from edge to edge.
+/// otherwise the model's own becomes the world's, unless lengths in it are wrong by more than half a
+/// per cent. Then its axes are scaled to be true in the middle; and where that leaves them wrong
+/// elsewhere, the frame is a conformal one about the middle (Frame::local). About the positions of a
+/// mission, which alone count then, the axes are always scaled.
+/// Posts that remain a grid along the frame's axes are kept unchanged; others are resampled
+/// (bilinear) on a grid of the same spacing, over a rectangle that the model covers: 20 km about a
+/// mission, else as large as possible.
 Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params);
 
-/// Heights at the layout's posts, from those of the whole model.
-std::vector<float> resample(const Dem& dem, const Layout& layout, const std::vector<float>& own);
+/// Lowers heights above the ellipsoid by those of the geoid.
+void bring_to_sea_level(const Dem& dem, Posts& posts);
+
+/// Heights at the layout's posts, from the needed part of the model's own.
+std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& own);
 }  // namespace terrain

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "dem.hpp"
+#include "place.hpp"
 
 namespace terrain {
 namespace {
@@ -136,6 +137,9 @@ Posts read(const Params& params, const Dem& dem, const Part& part) {
   Posts posts{part, {}, 0};
   posts.heights.resize(std::size_t(part.columns) * std::size_t(part.rows));
   Reader(params, dem, posts).read();
+  if (dem.above_ellipsoid) {
+    bring_to_sea_level(dem, posts);
+  }
   return posts;
 }
 

@@ -56,9 +56,11 @@ class Terrain final : public kit::FieldLayer<terrain::Model> {
     notes.push_back(
         text("scale error at most %.2g %% in ", 100 * layout.frame.scale_error(model().bounds())) +
         layout.frame.crs());
-    if (const std::string& datum = model().dem().datum; !datum.empty()) {
-      notes.push_back("heights above the zero of '" + datum + "'");
-    }
+    const std::string& datum = model().dem().datum;
+    notes.push_back(model().dem().above_ellipsoid
+                        ? "heights above the ellipsoid, brought to sea level by the geoid (EGM96)"
+                    : datum.empty() ? "heights without a datum, taken as above sea level"
+                                    : "heights above the zero of '" + datum + "'");
     notes.push_back(own_extent(model().dem()));
     notes.push_back(extent(layout.frame));
     return notes;
@@ -83,15 +85,7 @@ class Terrain final : public kit::FieldLayer<terrain::Model> {
     if (!frame.has_position()) {
       return metres;
     }
-    Box degrees = Box::empty();
-    for (const double x : {low.x(), high.x()}) {
-      for (const double y : {low.y(), high.y()}) {
-        const auto [lon, lat] = frame.to_lonlat(x, y);
-        // 178.5 to 181.5 across the antimeridian
-        const double turns = degrees.is_empty() ? 0 : std::round((degrees.min.x() - lon) / 360);
-        degrees = degrees.with({lon + 360 * turns, lat, 0});
-      }
-    }
+    const Box degrees = frame.degrees({Vec3(low.x(), low.y(), 0), Vec3(high.x(), high.y(), 0)});
     return metres + text("; longitude %.4f to %.4f, latitude %.4f to %.4f", degrees.min.x(),
                          degrees.max.x(), degrees.min.y(), degrees.max.y());
   }

@@ -6,63 +6,17 @@
 #include <cstdio>
 #include <map>
 
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/ground.hpp"
 
 namespace altiplan::zones {
 namespace {
 
-using formats::Point2;
-using formats::Ring;
 using formats::Zone;
 using formats::ZoneLimit;
 using formats::ZoneVolume;
 using Datum = ZoneLimit::Datum;
 using Use = PublishedRules::Use;
-
-// Edges are straight in longitude and latitude to this, metres, where the frame's map bends them.
-constexpr double kStraight = 0.5;
-
-/// True if the map bends the edge by less than that wherever it lies: a parallel is bent by
-/// tan(latitude) / R in a conformal map, and by four times that in no map that is used.
-bool is_short(const Point2& p, const Point2& q, const Point2& local_p, const Point2& local_q) {
-  constexpr double kEarth = 6'371'000;
-  const double length = std::hypot(local_q[0] - local_p[0], local_q[1] - local_p[1]);
-  const double lat = radians(std::max(std::abs(p[1]), std::abs(q[1])));
-  return length * length / 8 * 4 * (1 + std::tan(lat)) / kEarth <= kStraight;
-}
-
-void add_edge(const Frame& frame, const Point2& p, const Point2& q, const Point2& local_p,
-              const Point2& local_q, int depth, Ring& to) {
-  constexpr int kMaxDepth = 12;
-  if (is_short(p, q, local_p, local_q)) {
-    return;
-  }
-  const Point2 middle{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
-  const Point2 local = frame.to_local(middle[0], middle[1]);
-  const double off = std::hypot(local[0] - (local_p[0] + local_q[0]) / 2,
-                                local[1] - (local_p[1] + local_q[1]) / 2);
-  if (off <= kStraight || depth == kMaxDepth) {
-    return;
-  }
-  add_edge(frame, p, middle, local_p, local, depth + 1, to);
-  to.push_back(local);
-  add_edge(frame, middle, q, local, local_q, depth + 1, to);
-}
-
-Ring local(const Frame& frame, const Ring& lonlat) {
-  Ring corners;
-  for (const Point2& p : lonlat) {
-    corners.push_back(frame.to_local(p[0], p[1]));
-  }
-  Ring ring;
-  for (std::size_t n = 0; n < lonlat.size(); ++n) {
-    const Point2& p = lonlat[n];
-    const Point2& q = lonlat[n + 1 < lonlat.size() ? n + 1 : 0];
-    ring.push_back(corners[n]);
-    add_edge(frame, p, q, corners[n], corners[n + 1 < corners.size() ? n + 1 : 0], 0, ring);
-  }
-  return ring;
-}
 
 /// Bounds of all ground before this layer.
 Box ground_area(const World& before) {
@@ -84,14 +38,13 @@ class Converter {
 
   void add(const Zone& zone) {
     for (const ZoneVolume& volume : zone.volumes) {
-      GroundPrism limits{prism_of(volume), -kInfinity, kInfinity};
+      GroundPrism limits{{}, -kInfinity, kInfinity};
       set(volume.lower, limits.prism.floor, limits.above_floor);
       set(volume.upper, limits.prism.ceiling, limits.above_ceiling);
-      const std::vector<Shape> parts =
-          clip_ != nullptr ? clip_->cut(limits.prism) : std::vector<Shape>{limits.prism};
-      for (const Shape& part : parts) {
-        limits.prism = std::get<Prism>(part);
-        add_part(zone.label(), limits);
+      for (formats::Polygon& polygon : formats::in_frame(volume.polygon, site_.frame)) {
+        limits.prism.outline = std::move(polygon.outline);
+        limits.prism.holes = std::move(polygon.holes);
+        add_near(zone.label(), limits);
       }
     }
   }
@@ -123,12 +76,13 @@ class Converter {
   }
 
  private:
-  Prism prism_of(const ZoneVolume& volume) const {
-    Prism prism{local(site_.frame, volume.polygon.outline), {}};
-    for (const Ring& hole : volume.polygon.holes) {
-      prism.holes.push_back(local(site_.frame, hole));
+  void add_near(const std::string& name, GroundPrism limits) {
+    const std::vector<Shape> parts =
+        clip_ != nullptr ? clip_->cut(limits.prism) : std::vector<Shape>{limits.prism};
+    for (const Shape& part : parts) {
+      limits.prism = std::get<Prism>(part);
+      add_part(name, limits);
     }
-    return prism;
   }
 
   void set(const ZoneLimit& limit, double& sea, double& above) {

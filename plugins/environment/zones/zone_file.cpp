@@ -220,13 +220,4 @@ FileZones read_zone_file(const std::string& file, const FileRules& rules) {
   return formats::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);
 }
 
-Frame frame_of(const FileZones& file) {
-  formats::Point2 low{180, 90};
-  double north = -90;
-  for (const formats::Point2& p : corners_of(file)) {
-    low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
-    north = std::max(north, p[1]);
-  }
-  return Frame::geographic(low[0], low[1], (low[1] + north) / 2);
-}
 }  // namespace altiplan::zones

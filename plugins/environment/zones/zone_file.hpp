@@ -7,7 +7,6 @@
 
 #include "altiplan/formats/airspace.hpp"
 #include "altiplan/formats/mission_file.hpp"
-#include "altiplan/frame.hpp"
 #include "altiplan/params.hpp"
 
 namespace altiplan::zones {
@@ -54,7 +53,4 @@ FileZones read_zone_file(const std::string& file, const FileRules& rules);
 inline std::vector<formats::Point2> corners_of(const FileZones& file) {
   return formats::corners_of(file.airspace ? file.airspace->zones : file.zones);
 }
-
-/// A frame for a world that has none: its origin is the south-west corner of the zones.
-Frame frame_of(const FileZones& file);
 }  // namespace altiplan::zones

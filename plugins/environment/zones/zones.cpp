@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
@@ -130,7 +131,7 @@ class Zones final : public Environment {
     double horizon_s;
     std::optional<Frame> frame;
     std::vector<Shape> keep_out;
-    std::vector<Shape> keep_in;
+    std::vector<std::vector<Shape>> keep_in;  ///< the parts of each zone
     KeepInRule rule;
     std::vector<GroundPrism> above_ground;
     std::vector<std::string> above_ground_names;
@@ -172,20 +173,30 @@ class Zones final : public Environment {
     /// One for each zone that must hold the vehicle, or one of all zones.
     std::vector<KeepIn> kept_in() {
       std::vector<KeepIn> groups;
-      if (rule == KeepInRule::any && !keep_in.empty()) {
-        groups.emplace_back(std::move(keep_in));
-      } else {
-        for (Shape& zone : keep_in) {
-          groups.emplace_back(std::vector<Shape>{std::move(zone)});
+      std::vector<Shape> any;
+      for (std::vector<Shape>& zone : keep_in) {
+        if (rule == KeepInRule::any) {
+          any.insert(any.end(), zone.begin(), zone.end());
+        } else {
+          groups.emplace_back(std::move(zone));
         }
+      }
+      if (rule == KeepInRule::any && !keep_in.empty()) {
+        groups.emplace_back(std::move(any));
       }
       return groups;
     }
 
-    void add(bool keeps_in, const Shape& shape, const std::string& name) {
-      (keeps_in ? keep_in : keep_out).push_back(shape);
-      drawing.shapes.push_back(
-          {shape, keeps_in ? Drawn::Role::keep_in : Drawn::Role::keep_out, name});
+    void add(bool keeps_in, const std::vector<Shape>& parts, const std::string& name) {
+      if (keeps_in) {
+        keep_in.push_back(parts);
+      } else {
+        keep_out.insert(keep_out.end(), parts.begin(), parts.end());
+      }
+      for (const Shape& part : parts) {
+        drawing.shapes.push_back(
+            {part, keeps_in ? Drawn::Role::keep_in : Drawn::Role::keep_out, name});
+      }
     }
 
     bool is_active(const std::vector<formats::ZonePeriod>& periods) {
@@ -202,20 +213,13 @@ class Zones final : public Environment {
       return active;
     }
 
-    Ring local(const Ring& lonlat) const {
-      Ring ring;
-      for (const Point2& p : lonlat) {
-        ring.push_back(site.frame.to_local(p[0], p[1]));
+    std::vector<Shape> prisms(const Polygon& lonlat, bool keeps_in, double floor,
+                              double ceiling) const {
+      std::vector<Shape> parts;
+      for (Polygon& part : formats::in_frame(lonlat, site.frame, keeps_in)) {
+        parts.push_back(Prism{std::move(part.outline), std::move(part.holes), floor, ceiling});
       }
-      return ring;
-    }
-
-    Shape prism(const Polygon& lonlat, double floor, double ceiling) const {
-      Prism result{local(lonlat.outline), {}, floor, ceiling};
-      for (const Ring& hole : lonlat.holes) {
-        result.holes.push_back(local(hole));
-      }
-      return result;
+      return parts;
     }
 
     void read_file(const Params& params) {
@@ -223,7 +227,7 @@ class Zones final : public Environment {
       FileZones file = read_zone_file(name, params.rules);
       notes.insert(notes.end(), file.notes.begin(), file.notes.end());
       if (!site.frame.has_position() && (file.airspace || !file.zones.empty())) {
-        site.frame = frame_of(file);
+        site.frame = formats::frame_around(corners_of(file));
         frame = site.frame;
       }
       std::optional<Clip> clip;
@@ -238,12 +242,13 @@ class Zones final : public Environment {
           if (!is_active(zone.periods)) {
             continue;
           }
-          const Shape shape = shape_of(zone.volumes.front());
-          const std::vector<Shape> parts =
-              clip && !zone.keeps_in() ? clip->cut(shape) : std::vector<Shape>{shape};
-          for (const Shape& part : parts) {
-            add(zone.keeps_in(), part, zone.name);
+          std::vector<Shape> parts;
+          for (const Shape& shape : shapes_of(zone.volumes.front(), zone.keeps_in())) {
+            const std::vector<Shape> within =
+                clip && !zone.keeps_in() ? clip->cut(shape) : std::vector<Shape>{shape};
+            parts.insert(parts.end(), within.begin(), within.end());
           }
+          add(zone.keeps_in(), parts, zone.name);
         } catch (const Error& error) {
           throw Error(name + ": '" + zone.name + "': " + error.what());
         }
@@ -264,13 +269,27 @@ class Zones final : public Environment {
           above_ground.push_back(std::move(zone.limits));
           above_ground_names.push_back(zone.name);
         } else {
-          add(false, zone.limits.prism, zone.name);
+          add(false, {zone.limits.prism}, zone.name);
         }
       }
     }
 
+    /// A circle where the frame makes it none: chords around it, or within it to stay in, that are
+    /// at most half a centimetre off.
+    static Ring circle(const formats::ZoneVolume& volume, bool keeps_in) {
+      constexpr double kChord = 0.005;
+      const double half_step = std::acos(volume.radius_m / (volume.radius_m + kChord));
+      const int corners = std::max(8, int(std::ceil(kPi / half_step)));
+      const double radius = keeps_in ? volume.radius_m : volume.radius_m / std::cos(kPi / corners);
+      Ring ring;
+      for (int n = 0; n < corners; ++n) {
+        ring.push_back(geodesic_end(volume.centre, 360.0 * n / corners, radius));
+      }
+      return formats::continuous(ring);
+    }
+
     /// Of a volume whose limits are above sea level.
-    Shape shape_of(const formats::ZoneVolume& volume) const {
+    std::vector<Shape> shapes_of(const formats::ZoneVolume& volume, bool keeps_in) const {
       const auto height = [](const formats::ZoneLimit& limit, double none) {
         return limit.datum == formats::ZoneLimit::Datum::none ? none : limit.metres;
       };
@@ -278,21 +297,27 @@ class Zones final : public Environment {
       const double ceiling = height(volume.upper, kInfinity);
       if (volume.polygon.outline.empty()) {
         const auto [x, y] = site.frame.to_local(volume.centre[0], volume.centre[1]);
-        return Cylinder{x, y, volume.radius_m, floor, ceiling};
+        const double inner = formats::radius_in(site.frame, volume.centre, volume.radius_m, true);
+        const double outer = formats::radius_in(site.frame, volume.centre, volume.radius_m, false);
+        constexpr double kRound = 0.01;  // metres
+        return outer - inner <= kRound
+                   ? std::vector<Shape>{Cylinder{x, y, keeps_in ? inner : outer, floor, ceiling}}
+                   : prisms({circle(volume, keeps_in), {}}, keeps_in, floor, ceiling);
       }
-      return prism(volume.polygon, floor, ceiling);
+      return prisms(volume.polygon, keeps_in, floor, ceiling);
     }
 
     void read_zone(const ZoneParams& zone, std::size_t n) {
       const double floor = zone.floor_m.value_or(-kInfinity);
       const double ceiling = zone.ceiling_m.value_or(kInfinity);
-      Shape shape;
+      const bool keeps_in = zone.kind == formats::Restriction::keep_in;
+      std::vector<Shape> shapes;
       if (zone.cylinder) {
         if (zone.cylinder->at.above_ground_m) {
           throw Error("above_ground_m does not go with a zone: use floor_m and ceiling_m");
         }
         const Vec3 at = site.resolve(zone.cylinder->at);
-        shape = Cylinder{at.x(), at.y(), zone.cylinder->radius_m, floor, ceiling};
+        shapes = {Cylinder{at.x(), at.y(), zone.cylinder->radius_m, floor, ceiling}};
       } else {
         const bool is_local = !zone.polygon->outline_m.empty();
         Polygon polygon{formats::without_repeats(is_local ? zone.polygon->outline_m
@@ -301,19 +326,21 @@ class Zones final : public Environment {
         for (Ring& hole : polygon.holes) {
           hole = formats::without_repeats(hole);
         }
+        if (!is_local) {
+          polygon = formats::unfolded(std::move(polygon));
+        }
         if (const std::string problem = formats::polygon_problem(polygon); !problem.empty()) {
           throw Error(problem);
         }
-        shape = is_local ? Shape(Prism{polygon.outline, polygon.holes, floor, ceiling})
-                         : prism(polygon, floor, ceiling);
+        shapes = is_local ? std::vector<Shape>{Prism{polygon.outline, polygon.holes, floor, ceiling}}
+                          : prisms(polygon, keeps_in, floor, ceiling);
       }
       if (!is_active(time_window(zone.from, zone.until))) {
         return;
       }
-      const bool keeps_in = zone.kind == formats::Restriction::keep_in;
-      add(keeps_in, shape, zone.id);
+      add(keeps_in, shapes, zone.id);
       if (zone.cylinder && !keeps_in) {
-        const auto& cylinder = std::get<Cylinder>(shape);
+        const auto& cylinder = std::get<Cylinder>(shapes.front());
         const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;
         threats.push_back({{cylinder.x, cylinder.y, middle},
                            cylinder.radius,

@@ -131,15 +131,24 @@ export function place_at(line, time) {
   return {at, ahead: between(at, b, share < 1 ? 1 : 0), speed, from};
 }
 
-/** Longitude and latitude of (x, y), bilinear between the corners of the box. */
+/** Longitude and latitude of (x, y): bilinear between the directions of the box's corners from the
+ * Earth's middle, which have no jump at 180 degrees and none at a pole. */
 export function lonlat(scene, [x, y]) {
   if (!scene.corners_lonlat) return null;
-  const [sw, se, ne, nw] = scene.corners_lonlat;
   const [low, high] = scene.box;
   const u = (x - low[0]) / (high[0] - low[0]);
   const v = (y - low[1]) / (high[1] - low[1]);
-  return [0, 1].map((axis) => (sw[axis] * (1 - u) + se[axis] * u) * (1 - v) +
-    (nw[axis] * (1 - u) + ne[axis] * u) * v);
+  const shares = [(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v];
+  const radian = 180 / Math.PI;
+  const sum = [0, 0, 0];
+  scene.corners_lonlat.forEach(([lon, lat], corner) => {
+    const across = shares[corner] * Math.cos(lat / radian);
+    sum[0] += across * Math.cos(lon / radian);
+    sum[1] += across * Math.sin(lon / radian);
+    sum[2] += shares[corner] * Math.sin(lat / radian);
+  });
+  return [Math.atan2(sum[1], sum[0]) * radian,
+    Math.atan2(sum[2], Math.hypot(sum[0], sum[1])) * radian];
 }
 
 /** The grid's step and its lines: round coordinates within the box. */
