@@ -88,6 +88,7 @@ class Hover {
   void circle(std::size_t command, const Destination& centre, double radius, double turns,
               bool clockwise);
   void land(std::size_t command, const char* what);
+  bool is_on_circle() const { return left_.has_value(); }
   /// While it waits after a circle, which it does not leave.
   void go_on_circling(double seconds);
 

@@ -35,6 +35,10 @@ void Walker::set_home(std::size_t n) {
   const bool is_here =
       command.params[0] == 1 || (!command.has_position() && command.altitude_m == 0);
   former_home_z_ = home_z_;
+  if (is_here && (is_winged_ || (hover_ && hover_->is_on_circle()))) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "where on its way it is when it sets its home there is not judged");
+  }
   if (is_here) {
     home_ = here();
     home_z_ = low();

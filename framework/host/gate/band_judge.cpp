@@ -202,20 +202,22 @@ bool BandJudge::is_below_ground(const Leg& leg) const {
   return request_.world->has_ground() && !(request_.world->ground_gap(leg.from, leg.to) >= -kTouch);
 }
 
-void BandJudge::judge_line(const Line& line, FlownPart::Ground ground, bool is_sky_clear,
-                           std::vector<Worst>& worst) const {
-  if (ground != FlownPart::Ground::kept_off) {
-    judge_end(line, ground, worst);
-    return;
+std::vector<BandJudge::Line> BandJudge::telling(const std::vector<Line>& lines) const {
+  if (lines.size() <= 2 * kLookedAt) {
+    return lines;
   }
-  const Requests& requests = within(line.reach_m);
-  if (leg_ok(std::nullopt, line.leg, is_sky_clear ? requests.ground : requests.all)) {
-    return;
+  std::vector<std::pair<double, std::size_t>> by_height;
+  for (std::size_t n = 0; n < lines.size(); ++n) {
+    by_height.emplace_back(request_.world->ground_gap(lines[n].leg.from, lines[n].leg.to), n);
   }
-  judge_sky(line, worst);
-  for (Violation& violation : leg_violations(std::nullopt, line.leg, requests.ground, 0)) {
-    keep_worst(worst, std::move(violation), line);
+  std::sort(by_height.begin(), by_height.end());
+  std::vector<Line> chosen;
+  for (int n = 0; n < kLookedAt; ++n) {
+    chosen.push_back(lines[by_height[n].second]);
+    chosen.push_back(lines[by_height[by_height.size() - 1 - n].second]);
+    chosen.push_back(lines[lines.size() * n / kLookedAt]);
   }
+  return chosen;
 }
 
 Vec3 BandJudge::place_of(const Worst& worst) const {
@@ -233,9 +235,24 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
   std::vector<Worst> worst;
   looked_at_ = 0;
   const std::vector<bool> is_suspect = suspects_in(part);
+  std::vector<Line> invalid;
   for (std::size_t n = 0; n < part.strips.size(); ++n) {
     for (const Line& line : lines_of(part.strips[n], request_.world->has_ground())) {
-      judge_line(line, part.ground, !is_suspect[n], worst);
+      const Requests& requests = within(line.reach_m);
+      if (part.ground != FlownPart::Ground::kept_off) {
+        judge_end(line, part.ground, worst);
+      } else if (!leg_ok(std::nullopt, line.leg, is_suspect[n] ? requests.all : requests.ground)) {
+        invalid.push_back(line);
+        if (is_suspect[n]) {
+          judge_sky(line, worst);
+        }
+      }
+    }
+  }
+  for (const Line& line : telling(invalid)) {
+    for (Violation& violation :
+         leg_violations(std::nullopt, line.leg, within(line.reach_m).ground, 0)) {
+      keep_worst(worst, std::move(violation), line);
     }
   }
   std::vector<Found> found;

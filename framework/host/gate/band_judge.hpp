@@ -59,8 +59,9 @@ class BandJudge {
   void add_suspects(std::span<const Strip> strips, std::vector<bool>& is_suspect,
                     std::size_t first) const;
   std::vector<bool> suspects_in(const FlownPart& part) const;
-  void judge_line(const Line& line, FlownPart::Ground ground, bool is_sky_clear,
-                  std::vector<Worst>& worst) const;
+  /// Of lines that are not valid those that tell how bad it is, the lowest, the highest and some
+  /// between: to find out takes long.
+  std::vector<Line> telling(const std::vector<Line>& lines) const;
   void judge_end(const Line& line, FlownPart::Ground ground, std::vector<Worst>& worst) const;
   /// True if a leg is above a maximum height.
   bool is_too_high(const Leg& leg) const;

@@ -32,7 +32,7 @@ std::string heights_of(const FlownMission& flown, const formats::MissionFile& pl
 /// Metres along straight lines from item to item, in plan.
 double drawn_length(const formats::MissionFile& plan) {
   const formats::MissionPoint& first = plan.items.front().at;
-  const Frame frame = Frame::geographic(first.lon, first.lat, first.lat);
+  const Frame frame = Frame::local({first.lon, first.lat});
   double length = 0;
   auto before = frame.to_local(first.lon, first.lat);
   for (const formats::MissionItem& item : plan.items) {
