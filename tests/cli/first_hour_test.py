@@ -59,8 +59,8 @@ class FirstHour(unittest.TestCase):
         said = self.run_with(0, volume="{floor_m: 200, ceiling_m: 1500, corridor_m: 1000}")
         self.assertNotIn("volume: cut", said)
 
-    def test_frame_auto_is_utm_for_degrees(self):
-        self.assertIn("frame: EPSG:32616", self.run_with(0))
+    def test_frame_auto_is_a_model_s_own_where_lengths_are_right(self):
+        self.assertIn("frame: EPSG:4326, affine", self.run_with(0))
 
     def test_swapped_axes_are_recognised(self):
         said = self.run_with(3, start="[36.48, -84.38]")

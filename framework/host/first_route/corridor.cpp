@@ -97,11 +97,22 @@ void Corridor::choose_frame() {
                           : tiles_.front().frame;
   frame_line_ = are_geographic ? "frame: {" + origin : "";
   Box box = Box::empty();
+  double length = 0;
+  Vec3 before(0, 0, 0);
   for (const WishedPoint& point : wished_) {
     const auto [x, y] = frame_.to_local(point.lon, point.lat);
-    box = box.with({x, y, 0});
+    length += box.is_empty() ? 0 : (Vec3(x, y, 0) - before).norm();
+    before = {x, y, 0};
+    box = box.with(before);
   }
-  if (tiles_.front().is_scaled() || !(frame_.scale_error(box.grown(1)) <= kMaxScaleError)) {
+  // A scenario whose model is in its own axes is built only if they are right in all of its volume.
+  const int width = are_geographic ? 0 : kWidths - 1;
+  box = box.grown(kMargins[width].of(length, turn_radius_m_));
+  if (!are_geographic) {
+    box = box.intersected(tiles_.front().bounds);
+  }
+  box.min.z() = box.max.z() = 0;
+  if (!(frame_.scale_error(box) <= kMaxScaleError)) {
     frame_ = Frame::local(middle_);
     frame_line_ = "frame: {crs: local, " + origin;
     is_resampled_ = true;

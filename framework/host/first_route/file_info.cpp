@@ -110,7 +110,8 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
   FileInfo info{"elevation model",
                 layer->info().notes,
                 {"environment:", entry("terrain", file, parameters),
-                 "# frame, if not given: " + tile.frame.crs() + ", origin at its south-west post"}};
+                 "# frame, if not given: " + layer->info().frame->crs() +
+                     ", origin at its south-west post"}};
   if (!tile.crs.empty()) {
     info.facts.push_back("names no coordinate system: read as " + tile.crs);
   }

@@ -33,6 +33,7 @@ bool may_be_model(const fs::path& file) {
 Site probing_site(const World& empty) {
   Site site;
   site.volume = {{0, 0, -1000}, {1, 1, 10000}};
+  site.frame_crs = "own";
   site.before = &empty;
   return site;
 }

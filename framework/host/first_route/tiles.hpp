@@ -21,8 +21,6 @@ struct Tile {
   std::string note;      ///< "403 x 344 posts of 74.6 x 92.5 m", and voids if there are any
 
   bool is_geographic() const;
-  /// True if lengths in the model's own axes are so wrong that its layer scales them.
-  bool is_scaled() const { return frame.crs().find(", scaled by ") != std::string::npos; }
   bool has_voids() const { return note.find("voids") != note.npos; }
   /// True if the point lies over the posts.
   bool holds(double lon, double lat) const;

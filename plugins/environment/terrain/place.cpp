@@ -451,8 +451,14 @@ Layout in_best_frame(const Dem& dem, const altiplan::Site& site, const Params& p
     return in_frame_about(dem, site, params);
   }
   const Layout own = in_own_frame(dem);
-  if (own.frame.scale_error(area_of(dem, own, site.volume)) <= kMaxError) {
+  const Box area = area_of(dem, own, site.volume);
+  if (own.frame.scale_error(area) <= kMaxError) {
     return own;
+  }
+  if (dem.geographic) {  // by so little that the volume's metres are still the same place
+    if (const auto scaled = in_scaled_frame(dem, own, area, kMaxError)) {
+      return *scaled;
+    }
   }
   const Box all = area_of(dem, own, {});
   if (const auto scaled = in_scaled_frame(dem, own, all, kMaxError)) {
@@ -466,6 +472,9 @@ Layout in_best_frame(const Dem& dem, const altiplan::Site& site, const Params& p
 Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params) {
   if (site.frame.has_position()) {
     return in_frame(dem, site.frame, params, site.about);
+  }
+  if (site.frame_crs == "own") {
+    return in_own_frame(dem);
   }
   if (site.frame_crs.empty() || site.frame_crs == "auto") {
     return in_best_frame(dem, site, params);

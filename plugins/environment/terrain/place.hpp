@@ -24,6 +24,7 @@ struct Layout {
 /// per cent. Then its axes are scaled to be true in the middle; and where that leaves them wrong
 /// elsewhere, the frame is a conformal one about the middle (Frame::local). About the positions of a
 /// mission, which alone count then, the axes are always scaled.
+/// A site whose `frame_crs` is "own" only looks at a model, in its own axes as they are.
 /// Posts that remain a grid along the frame's axes are kept unchanged; others are resampled
 /// (bilinear) on a grid of the same spacing, over a rectangle that the model covers: 20 km about a
 /// mission, else as large as possible.
