@@ -9,7 +9,7 @@ set(ALTIPLAN_SLOW_TESTS
   host_worker_pool_parent host_yaml local_planner_velocity_field pipelines_every_pipeline
   pipelines_fusion_flights pipelines_profiles planner_anya planner_dstar_lite
   planner_lazy_theta_star planner_ompl planner_stratified_theta reference_colony_oracle
-  reference_random_colonies reference_zone_maps)
+  reference_earth reference_random_colonies reference_zone_maps)
 
 function(altiplan_test_program program)
   set(target test_${program})
