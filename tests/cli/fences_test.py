@@ -107,7 +107,7 @@ class Fences(PlanCase):
     def test_rally_points_keep_the_limits_of_height(self):
         for height, options, code in ((200, ("--max-agl", "120"), 1), (100, ("--max-agl", "120"), 0),
                                       (100, ("--min-agl", "110"), 1), (200, ("--max-distance", "120"), 1)):
-            lines = ["QGC WPL 110", "0\t1\t0\t16\t0\t0\t0\t0\t36.48\t-84.38\t400\t1"]
+            lines = ["QGC WPL 110", "0\t1\t0\t16\t0\t0\t0\t0\t36.48\t-84.38\t636\t1"]
             lines += [f"{n + 1}\t0\t10\t16\t0\t0\t0\t0\t36.48\t{lon}\t115\t1"
                       for n, lon in enumerate((-84.38, -84.3799))]
             lines.append(f"3\t0\t10\t5100\t0\t0\t0\t0\t36.48\t-84.379\t{height}\t1")

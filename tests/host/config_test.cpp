@@ -136,7 +136,7 @@ TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
        "s.yaml:5:28: constraints.0.not_north.max_y: unknown key; expected one of does, holds_for, "
        "max_y_m"},
       {"frame: {crs: 'EPSG:1', origin_lonlat: [1, 2]}\n",
-       "s.yaml:5:8: frame: expected crs or origin_lonlat, not both"},
+       "s.yaml:5:8: frame: expected crs or origin_lonlat, or crs: local with origin_lonlat"},
       {"vehicle: {radius_m: .inf}\n", "s.yaml:5:21: vehicle.radius_m: expected a"},
   };
   for (const Case& one : cases) {

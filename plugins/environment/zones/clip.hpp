@@ -27,6 +27,8 @@ class Clip {
   /// The parts of the shape within the bounds: none if it lies outside, possibly several pieces of
   /// a prism. A cylinder that intersects the bounds stays whole.
   std::vector<Shape> cut(const Shape& shape);
+  /// Counts a zone that lies where the frame does not reach.
+  void drop() { ++dropped_; }
   /// Number of zones dropped and cut.
   std::string note() const;
   /// Of zones none of which lies within the bounds: what their corners (longitude, latitude) cover,

@@ -243,7 +243,11 @@ class Zones final : public Environment {
             continue;
           }
           std::vector<Shape> parts;
-          for (const Shape& shape : shapes_of(zone.volumes.front(), zone.keeps_in())) {
+          const std::vector<Shape> shapes = shapes_of(zone.volumes.front(), zone.keeps_in());
+          if (clip && shapes.empty()) {
+            clip->drop();  // on the other side of the Earth
+          }
+          for (const Shape& shape : shapes) {
             const std::vector<Shape> within =
                 clip && !zone.keeps_in() ? clip->cut(shape) : std::vector<Shape>{shape};
             parts.insert(parts.end(), within.begin(), within.end());
@@ -332,8 +336,9 @@ class Zones final : public Environment {
         if (const std::string problem = formats::polygon_problem(polygon); !problem.empty()) {
           throw Error(problem);
         }
-        shapes = is_local ? std::vector<Shape>{Prism{polygon.outline, polygon.holes, floor, ceiling}}
-                          : prisms(polygon, keeps_in, floor, ceiling);
+        shapes = is_local
+                     ? std::vector<Shape>{Prism{polygon.outline, polygon.holes, floor, ceiling}}
+                     : prisms(polygon, keeps_in, floor, ceiling);
       }
       if (!is_active(time_window(zone.from, zone.until))) {
         return;
