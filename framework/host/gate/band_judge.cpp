@@ -10,10 +10,11 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kRise = 8;     // metres between lines of one strip, one above the other
-constexpr double kTouch = 1;    // metres: where a slanted landing ends
-constexpr int kLookedAt = 4;    // lines
-constexpr double kGrain = 0.5;  // metres: reaches are rounded up to it
+constexpr double kRise = 8;           // metres between lines of one strip, one above the other
+constexpr double kTouch = 1;          // metres: where a slanted landing ends
+constexpr int kLookedAt = 4;          // lines
+constexpr std::size_t kEnough = 500;  // lines that are not valid
+constexpr double kGrain = 0.5;        // metres: reaches are rounded up to it
 
 /// The same rule's violation of a part of a leg, if it is violated there.
 std::optional<Violation> same_of_part(const Vec3& a, const Vec3& b, const Violation& whole,
@@ -237,7 +238,11 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
   const std::vector<bool> is_suspect = suspects_in(part);
   std::vector<Line> invalid;
   for (std::size_t n = 0; n < part.strips.size(); ++n) {
-    for (const Line& line : lines_of(part.strips[n], request_.world->has_ground())) {
+    std::vector<Line> lines = lines_of(part.strips[n], request_.world->has_ground());
+    if (invalid.size() > kEnough && lines.size() > 2) {
+      lines = {lines.front(), lines.back()};  // it fails: the lowest and the highest tell how far
+    }
+    for (const Line& line : lines) {
       const Requests& requests = within(line.reach_m);
       if (part.ground != FlownPart::Ground::kept_off) {
         judge_end(line, part.ground, worst);
