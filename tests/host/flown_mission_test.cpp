@@ -413,8 +413,8 @@ TEST(FlownMission, AHomeThatIsSetOnACircleIsNotJudged) {
   circle.params = {1, 0, 60, 0};
   const MissionCommand here = order(179, {1, 0, 0, 0});
   EXPECT_TRUE(has_rule(fly({command(22, 0, 0, 50), circle, here}, kCopter), "not_judged"));
-  EXPECT_FALSE(has_rule(fly({command(22, 0, 0, 50), command(16, 0, 500, 50), here}, kCopter),
-                        "not_judged"));
+  EXPECT_FALSE(
+      has_rule(fly({command(22, 0, 0, 50), command(16, 0, 500, 50), here}, kCopter), "not_judged"));
 }
 }  // namespace
 }  // namespace altiplan::host::flown_mission_test

@@ -73,8 +73,10 @@ TEST_P(RealTerrain, ARouteIsPlannedAndSound) {
   // Looked at again: heights of the ground below the route, every 5 m.
   const auto layer = testing::make_environment("terrain", terrain);
   Polyline route;
-  for (const host::Json& p : result["route"]) {
-    route.emplace_back(p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+  const Frame& frame = layer->info().frame.value();  // of the whole model, not about the volume
+  for (const host::Json& p : result["route_lonlat"]) {
+    const auto [x, y] = frame.to_local(p[0].get<double>(), p[1].get<double>());
+    route.emplace_back(x, y, p[2].get<double>());
   }
   const auto min_height = [&](const Vec3& a, const Vec3& b) {
     double least = kInfinity;

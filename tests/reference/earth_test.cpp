@@ -30,8 +30,8 @@ bool has_tools() { return std::system("GeodSolve --version > /dev/null 2>&1") ==
 
 /// What a program prints for these lines.
 std::istringstream answers(const std::string& command, const std::string& lines) {
-  const std::string stem = std::filesystem::temp_directory_path() /
-                           ("altiplan_earth_" + std::to_string(::getpid()));
+  const std::string stem =
+      std::filesystem::temp_directory_path() / ("altiplan_earth_" + std::to_string(::getpid()));
   std::ofstream(stem + ".in") << lines;
   const std::string call = command + " < " + stem + ".in > " + stem + ".out 2>&1";
   EXPECT_EQ(std::system(call.c_str()), 0) << command;
@@ -79,7 +79,8 @@ std::vector<Shot> shots(std::size_t count, double longest, std::uint64_t seed) {
   std::string lines;
   for (std::size_t n = 0; n < count; ++n) {
     all.push_back({random_place(random), random.uniform(-180, 180), random.uniform(1, longest)});
-    lines += line({all.back().from[1], all.back().from[0], all.back().bearing_deg, all.back().metres});
+    lines +=
+        line({all.back().from[1], all.back().from[0], all.back().bearing_deg, all.back().metres});
   }
   std::istringstream found = answers("GeodSolve -p 9", lines);
   double azimuth = 0;
@@ -196,8 +197,7 @@ bool holds(const std::vector<Polygon>& parts, double x, double y) {
     for (std::size_t n = 0; n < part.outline.size(); ++n) {
       const Point2& a = part.outline[n];
       const Point2& b = part.outline[(n + 1) % part.outline.size()];
-      inside ^= (a[1] > y) != (b[1] > y) &&
-                x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]);
+      inside ^= (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]);
     }
     if (inside) {
       return true;
@@ -243,9 +243,11 @@ TEST(Earth, AreasOfRings) {
     const Ring ring = random_ring(random, about, 0.05);
     const Frame frame = Frame::local(about);
     double twice = 0;
-    for (const Polygon& part : formats::in_frame(formats::unfolded(Polygon{ring, {}}), frame, true)) {
+    for (const Polygon& part :
+         formats::in_frame(formats::unfolded(Polygon{ring, {}}), frame, true)) {
       for (std::size_t k = 0; k < part.outline.size(); ++k) {
-        twice += formats::cross({0, 0}, part.outline[k], part.outline[(k + 1) % part.outline.size()]);
+        twice +=
+            formats::cross({0, 0}, part.outline[k], part.outline[(k + 1) % part.outline.size()]);
       }
     }
     areas.push_back(std::abs(twice) / 2);
@@ -282,18 +284,24 @@ TEST(Earth, EdgesOverMoreThanHalfOfTheEarth) {
   const auto box = [](double west, double south, double east, double north) {
     return Ring{{west, south}, {east, south}, {east, north}, {west, north}};
   };
-  const std::vector<Case> cases{
-      {box(-180, -90, 180, 90), {25, 58}, true},     {box(-180, -90, 180, 90), {180, 10}, true},
-      {box(-180, -90, 180, 90), {0, 90}, true},      {box(-170, -80, 170, 80), {25, 58}, true},
-      {box(-170, -80, 170, 80), {175, 58}, false},   {box(-180, -80, 30, 80), {25, 58}, true},
-      {box(-180, -80, 20, 80), {25, 58}, false},     {box(-156, 58, -154, 60), {25, 58.9}, false},
-      {box(179, -18, -179, -16), {180, -17}, true},  {box(179, -18, -179, -16), {0, -17}, false},
-      {box(-179, -16, 179, -18), {180, -17}, true},  {box(170, 58, -170, 60), {-175, 59}, true},
-      {box(0, 80, 90, 90), {45, 89.9}, true},        {box(0, 80, 90, 90), {-135, 89.9}, false},
-      {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {10, 90}, true},
-      {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {-45, 75}, true},
-      {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {25, 58}, false},
-      {{{0, -70}, {-90, -70}, {180, -70}, {90, -70}}, {10, -85}, true}};
+  const std::vector<Case> cases{{box(-180, -90, 180, 90), {25, 58}, true},
+                                {box(-180, -90, 180, 90), {180, 10}, true},
+                                {box(-180, -90, 180, 90), {0, 90}, true},
+                                {box(-170, -80, 170, 80), {25, 58}, true},
+                                {box(-170, -80, 170, 80), {175, 58}, false},
+                                {box(-180, -80, 30, 80), {25, 58}, true},
+                                {box(-180, -80, 20, 80), {25, 58}, false},
+                                {box(-156, 58, -154, 60), {25, 58.9}, false},
+                                {box(179, -18, -179, -16), {180, -17}, true},
+                                {box(179, -18, -179, -16), {0, -17}, false},
+                                {box(-179, -16, 179, -18), {180, -17}, true},
+                                {box(170, 58, -170, 60), {-175, 59}, true},
+                                {box(0, 80, 90, 90), {45, 89.9}, true},
+                                {box(0, 80, 90, 90), {-135, 89.9}, false},
+                                {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {10, 90}, true},
+                                {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {-45, 75}, true},
+                                {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {25, 58}, false},
+                                {{{0, -70}, {-90, -70}, {180, -70}, {90, -70}}, {10, -85}, true}};
   for (const auto& [ring, at, inside] : cases) {
     const Frame frame = Frame::local(at);
     const auto parts = formats::in_frame(formats::unfolded(Polygon{ring, {}}), frame);

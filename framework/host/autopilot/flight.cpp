@@ -96,9 +96,10 @@ void Flight::add_strip(const Vec3& from, double from_high, const Vec3& to, doubl
 namespace {
 
 /// The line that an autopilot flies between two places, of those that are called straight: PX4's is
-/// straight in an azimuthal projection about a place nearby, which is a geodesic but for L³ / (8 R²);
-/// ArduPilot's runs in even steps of latitude and longitude but for east times the tangent of the
-/// latitude times the change of latitude / 8, as it scales longitudes by that of the leg's middle.
+/// straight in an azimuthal projection about a place nearby, which is a geodesic but for L³ / (8
+/// R²); ArduPilot's runs in even steps of latitude and longitude but for east times the tangent of
+/// the latitude times the change of latitude / 8, as it scales longitudes by that of the leg's
+/// middle.
 class FlownLine {
  public:
   FlownLine(const Frame& frame, const Vec3& from, const Vec3& to, bool is_px4)
@@ -141,8 +142,8 @@ class FlownLine {
 
 void Flight::add_leg(const Vec3& from, double from_high, const Vec3& to, double to_high,
                      double reach) {
-  constexpr double kShort = 200;    // metres, on which all lines are one to a millimetre
-  constexpr double kOff = 0.02;     // metres between the line and its chords
+  constexpr double kShort = 200;  // metres, on which all lines are one to a millimetre
+  constexpr double kOff = 0.02;   // metres between the line and its chords
   constexpr int kMaxChords = 4096;
   const double length = (to - from).head<2>().norm();
   if (!world_.frame().has_position() || length < kShort) {

@@ -77,8 +77,8 @@ struct PrismParams {
   std::vector<Shape> shapes(const Site& site) const {
     std::vector<formats::Polygon> polygons{{outline_m, {}}};
     if (!outline_lonlat.empty()) {
-      polygons = formats::in_frame(formats::unfolded(formats::Polygon{outline_lonlat, {}}),
-                                   site.frame);
+      polygons =
+          formats::in_frame(formats::unfolded(formats::Polygon{outline_lonlat, {}}), site.frame);
     }
     std::vector<Shape> prisms;
     for (formats::Polygon& polygon : polygons) {
@@ -90,7 +90,8 @@ struct PrismParams {
   Shape shape(const Site& site) const {
     const std::vector<Shape> parts = shapes(site);
     if (parts.size() != 1) {
-      throw Error("outline_lonlat: expected a polygon near the other layers, on one side of the Earth");
+      throw Error(
+          "outline_lonlat: expected a polygon near the other layers, on one side of the Earth");
     }
     return parts.front();
   }
@@ -112,8 +113,8 @@ constexpr PluginEntry kEnvironments[] = {
     detail::make_entry<Environment, OneShape<CylinderParams>, CylinderParams>(
         "cylinder", "an upright cylinder"),
     detail::make_entry<Environment, OneShape<BoxParams>, BoxParams>("box", "an axis-aligned box"),
-    detail::make_entry<Environment, PrismLayer, PrismParams>(
-        "prism", "an upright prism over a polygon")};
+    detail::make_entry<Environment, PrismLayer, PrismParams>("prism",
+                                                             "an upright prism over a polygon")};
 
 /// m/s; beyond this, positions at the end of a long flight overflow.
 constexpr double kMaxSpeed = 1e6;

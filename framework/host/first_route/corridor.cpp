@@ -93,8 +93,8 @@ void Corridor::choose_frame() {
   const bool are_geographic = std::all_of(tiles_.begin(), tiles_.end(), is_geographic);
   const std::string origin =
       "origin_lonlat: [" + with_digits(middle_[0], 7) + ", " + with_digits(middle_[1], 7) + "]}";
-  frame_ = are_geographic ? Frame::geographic(middle_[0], middle_[1], middle_[1])
-                          : tiles_.front().frame;
+  frame_ =
+      are_geographic ? Frame::geographic(middle_[0], middle_[1], middle_[1]) : tiles_.front().frame;
   frame_line_ = are_geographic ? "frame: {" + origin : "";
   Box box = Box::empty();
   double length = 0;

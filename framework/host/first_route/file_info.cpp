@@ -107,11 +107,11 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
   const std::string parameters =
       (tile.crs.empty() ? "" : ", crs: " + tile.crs) + ", voids: neighbours";
   const auto layer = build("terrain", file, parameters, registry);
-  FileInfo info{"elevation model",
-                layer->info().notes,
-                {"environment:", entry("terrain", file, parameters),
-                 "# frame, if not given: " + layer->info().frame->crs() +
-                     ", origin at its south-west post"}};
+  FileInfo info{
+      "elevation model",
+      layer->info().notes,
+      {"environment:", entry("terrain", file, parameters),
+       "# frame, if not given: " + layer->info().frame->crs() + ", origin at its south-west post"}};
   if (!tile.crs.empty()) {
     info.facts.push_back("names no coordinate system: read as " + tile.crs);
   }

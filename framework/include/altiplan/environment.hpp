@@ -39,12 +39,10 @@ struct LayerInfo {
 
 /// Inputs of an environment besides its parameters.
 struct ALTIPLAN_API Site {
-  Frame frame;            ///< without a position until a layer provides one
-  std::string frame_crs;  ///< from the scenario's `frame: {crs: …}`, or ""
-  /// Positions of a mission that is judged: lengths are true about them, where the layers define
-  /// the frame; empty for a scenario, whose local metres may be a file's own.
-  std::vector<LonLat> about;
-  Box volume;  ///< infinite where the scenario leaves it to the layers
+  Frame frame;                ///< without a position until a layer provides one
+  std::string frame_crs;      ///< from the scenario's `frame: {crs: …}`, or ""
+  std::vector<LonLat> about;  ///< positions of a judged mission: lengths are true about them
+  Box volume;                 ///< infinite where the scenario leaves it to the layers
   Vehicle vehicle;
   const World* before = nullptr;  ///< the layers before this one; never null inside a constructor
   std::optional<Vec3> start;      ///< if already known

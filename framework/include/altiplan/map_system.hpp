@@ -11,12 +11,12 @@
 namespace altiplan {
 
 /// Height of the geoid, which is sea level, above the ellipsoid of WGS 84, metres: of EGM96 by the
-/// grid of 15' that PROJ's data hold. A height above the ellipsoid less this is one above sea level.
-/// Throws Error if the grid is not installed.
+/// grid of 15' that PROJ's data hold. A height above the ellipsoid less this is one above sea
+/// level. Throws Error if the grid is not installed.
 ALTIPLAN_API double geoid_height(double lon, double lat);
 
-/// A coordinate system, horizontal and of heights, whose axes are x east (or longitude), y, z up. Its
-/// library is loaded by the first.
+/// A coordinate system, horizontal and of heights, whose axes are x east (or longitude), y, z up.
+/// Its library is loaded by the first.
 class ALTIPLAN_API MapSystem {
  public:
   /// From "EPSG:2263", or the URN or address of the OGC for one. Throws Error if it is none.

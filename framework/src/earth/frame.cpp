@@ -19,7 +19,8 @@ class AffineProjection final : public Projection {
       : lon_(lon), lat_(lat), radii_(ground_radii(middle_lat)) {}
 
   std::array<double, 2> to_local(double lon, double lat) const override {
-    return {radians(longitude_near(lon, lon_) - lon_) * radii_.east, radians(lat - lat_) * radii_.north};
+    return {radians(longitude_near(lon, lon_) - lon_) * radii_.east,
+            radians(lat - lat_) * radii_.north};
   }
 
   std::array<double, 2> to_lonlat(double x, double y) const override {
@@ -32,8 +33,8 @@ class AffineProjection final : public Projection {
   GroundRadii radii_;
 };
 
-/// C. F. F. Karney, Transverse Mercator with an accuracy of a few nanometers, Journal of Geodesy 85,
-/// 2011. True along the meridian of the middle, which any pole lies on.
+/// C. F. F. Karney, Transverse Mercator with an accuracy of a few nanometers, Journal of Geodesy
+/// 85, 2011. True along the meridian of the middle, which any pole lies on.
 class LocalProjection final : public Projection {
  public:
   LocalProjection(const LonLat& middle, const LonLat& origin)
@@ -124,9 +125,10 @@ double Frame::scale_error(const Box& box) const {
       const double x = box.min.x() + (box.max.x() - box.min.x()) * i / kPoints;
       const double y = box.min.y() + (box.max.y() - box.min.y()) * j / kPoints;
       for (const auto& [dx, dy] : {std::pair(1.0, 0.0), {0.0, 1.0}, {0.6, 0.8}, {0.6, -0.8}}) {
-        const double metres = geodesic_course(projection_->to_lonlat(x, y),
-                                              projection_->to_lonlat(x + kStep * dx, y + kStep * dy))
-                                  .metres;
+        const double metres =
+            geodesic_course(projection_->to_lonlat(x, y),
+                            projection_->to_lonlat(x + kStep * dx, y + kStep * dy))
+                .metres;
         const double error = std::abs(metres / kStep - 1);
         worst = std::isfinite(error) ? std::max(worst, error) : kInfinity;
       }

@@ -65,8 +65,8 @@ class GeoidGrid {
     const double u = east - std::floor(east);
     const double v = north - j;
     const auto at = [&](int column, int row) {
-      return double(heights_[std::size_t(row) * std::size_t(columns_) +
-                             std::size_t(column % columns_)]);
+      return double(
+          heights_[std::size_t(row) * std::size_t(columns_) + std::size_t(column % columns_)]);
     };
     return (1 - v) * ((1 - u) * at(i, j) + u * at(i + 1, j)) +
            v * ((1 - u) * at(i, j + 1) + u * at(i + 1, j + 1));

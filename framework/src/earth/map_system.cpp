@@ -15,21 +15,21 @@ namespace {
 
 /// The functions of PROJ, opened at the first use: it links to fifty libraries.
 struct Proj {
-#define ALTIPLAN_PROJ_FUNCTIONS(X)      \
-  X(proj_context_create)                \
-  X(proj_context_destroy)               \
-  X(proj_log_level)                     \
-  X(proj_create)                        \
-  X(proj_destroy)                       \
-  X(proj_get_type)                      \
-  X(proj_get_name)                      \
-  X(proj_crs_get_sub_crs)               \
-  X(proj_crs_get_coordinate_system)     \
-  X(proj_cs_get_axis_count)             \
-  X(proj_cs_get_axis_info)              \
-  X(proj_create_crs_to_crs_from_pj)     \
-  X(proj_normalize_for_visualization)   \
-  X(proj_errno_reset)                   \
+#define ALTIPLAN_PROJ_FUNCTIONS(X)    \
+  X(proj_context_create)              \
+  X(proj_context_destroy)             \
+  X(proj_log_level)                   \
+  X(proj_create)                      \
+  X(proj_destroy)                     \
+  X(proj_get_type)                    \
+  X(proj_get_name)                    \
+  X(proj_crs_get_sub_crs)             \
+  X(proj_crs_get_coordinate_system)   \
+  X(proj_cs_get_axis_count)           \
+  X(proj_cs_get_axis_info)            \
+  X(proj_create_crs_to_crs_from_pj)   \
+  X(proj_normalize_for_visualization) \
+  X(proj_errno_reset)                 \
   X(proj_trans)
 #define ALTIPLAN_PROJ_MEMBER(name) decltype(&::name) name;
   ALTIPLAN_PROJ_FUNCTIONS(ALTIPLAN_PROJ_MEMBER)
@@ -114,8 +114,8 @@ MapSystem::MapSystem(const std::string& definition) : impl_(std::make_unique<Imp
   PJ_CONTEXT* context = impl.context.get();
   proj().proj_log_level(context, PJ_LOG_NONE);
   const Pj crs(proj().proj_create(context, definition.c_str()));
-  const std::string wrong = "expected a coordinate system that PROJ knows (EPSG:7415), found '" +
-                            definition + "'";
+  const std::string wrong =
+      "expected a coordinate system that PROJ knows (EPSG:7415), found '" + definition + "'";
   if (!crs) {
     throw Error(wrong);
   }
@@ -132,8 +132,7 @@ MapSystem::MapSystem(const std::string& definition) : impl_(std::make_unique<Imp
   }
   const std::vector<Axis> axes = plane != nullptr ? impl.axes_of(plane) : std::vector<Axis>{};
   const PJ_TYPE type = plane != nullptr ? proj().proj_get_type(plane) : PJ_TYPE_UNKNOWN;
-  const bool is_geographic =
-      type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS;
+  const bool is_geographic = type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS;
   if (axes.size() < 2 || (!is_geographic && type != PJ_TYPE_PROJECTED_CRS)) {
     throw Error(wrong + ", which is neither geographic nor projected");
   }
@@ -149,8 +148,8 @@ MapSystem::MapSystem(const std::string& definition) : impl_(std::make_unique<Imp
   const Pj there(
       wgs84 ? proj().proj_create_crs_to_crs_from_pj(context, plane, wgs84.get(), nullptr, nullptr)
             : nullptr);
-  impl.to_lonlat.reset(
-      there ? proj().proj_normalize_for_visualization(context, there.get()) : nullptr);
+  impl.to_lonlat.reset(there ? proj().proj_normalize_for_visualization(context, there.get())
+                             : nullptr);
   if (!impl.to_lonlat) {
     throw Error(wrong + ", from which no way leads to WGS 84");
   }

@@ -182,7 +182,8 @@ class Surroundings {
       p[0] += turn;
     }
     ring = cut(cut(ring, 1, low_[1], 1), 1, high_[1], -1);
-    return holds_pole_ ? without_poles(in_quarters(ring)) : cut(cut(ring, 0, low_[0], 1), 0, high_[0], -1);
+    return holds_pole_ ? without_poles(in_quarters(ring))
+                       : cut(cut(ring, 0, low_[0], 1), 0, high_[0], -1);
   }
 
   /// With corners at most a quarter of a turn apart, but along a pole.

@@ -35,10 +35,10 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
                           const Site& site);
 
 /// CityJSON 1.x and 2.0, CityJSONSeq: every Building and BuildingPart as a prism over its ground
-/// surface, up to its highest point, where the file's coordinate system puts it in the world's frame.
-/// In a world without one, the file's axes in metres are local ones, offset by `origin_m`, the
-/// position that becomes (0, 0): by default the south-west corner of the buildings; a file in degrees
-/// defines the frame.
+/// surface, up to its highest point, where the file's coordinate system puts it in the world's
+/// frame. In a world without one, the file's axes in metres are local ones, offset by `origin_m`,
+/// the position that becomes (0, 0): by default the south-west corner of the buildings; a file in
+/// degrees defines the frame.
 Buildings read_city_json(const std::string& file,
                          const std::optional<std::array<double, 2>>& origin_m, const Site& site);
 

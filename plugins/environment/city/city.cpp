@@ -128,7 +128,7 @@ class City final : public Environment {
     const std::string& file = params.file->text;
     Buildings buildings =
         std::filesystem::path(file).extension() == ".csv" ? read_colliders(file, site)
-        : is_city_json(file)                              ? read_city_json(file, params.origin_m, site)
+        : is_city_json(file) ? read_city_json(file, params.origin_m, site)
                              : read_footprints(file, params.heights, params.base_m, site);
     std::vector<Shape> shapes;
     for (Building& building : buildings.list) {

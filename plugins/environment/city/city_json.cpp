@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by index; and CityJSONSeq,
-// a line with the metadata, then a line with the vertices of each feature.
+// CityJSON (https://www.cityjson.org/specs): a city model as JSON, vertices by index; and
+// CityJSONSeq, a line with the metadata, then a line with the vertices of each feature.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -236,7 +236,6 @@ void add_object(const Model& model, const std::string& name, const Json& object,
 }
 }  // namespace
 
-
 namespace {
 
 /// The metadata, and what holds objects and their vertices: the same, or each line of CityJSONSeq.
@@ -302,9 +301,11 @@ std::optional<MapSystem> system_of(const Json& header) {
 /// a millimetre, and are longitudes and latitudes if these are any.
 void expect_metres(const Json& header, const std::vector<Model>& models) {
   constexpr double kFine = 1e-5;
-  const bool is_fine = header.contains("transform") &&
-                       header["transform"].at("scale").at(0).get<double>() < kFine;
-  const auto is_place = [](const Vec3& v) { return std::abs(v.x()) <= 180 && std::abs(v.y()) <= 90; };
+  const bool is_fine =
+      header.contains("transform") && header["transform"].at("scale").at(0).get<double>() < kFine;
+  const auto is_place = [](const Vec3& v) {
+    return std::abs(v.x()) <= 180 && std::abs(v.y()) <= 90;
+  };
   if (is_fine && std::all_of(models.begin(), models.end(), [&](const Model& model) {
         return std::all_of(model.vertices.begin(), model.vertices.end(), is_place);
       })) {
@@ -328,7 +329,8 @@ class Placing {
 
   bool is_in_frame() const { return frame_.has_position() && system_.has_value(); }
   std::string note() const {
-    return "in " + system_->name() + (to_sea_level_ ? ", " + system_->heights() : ", heights as given");
+    return "in " + system_->name() +
+           (to_sea_level_ ? ", " + system_->heights() : ", heights as given");
   }
 
   /// Returns the frame that a file in degrees defines for the world.
@@ -432,8 +434,7 @@ Buildings read_city_json(const std::string& file,
     for (const Building& building : buildings.list) {
       low = low.cwiseMin(bounds(building.shape).min);
     }
-    const std::array<double, 2> origin =
-        origin_m.value_or(std::array<double, 2>{low.x(), low.y()});
+    const std::array<double, 2> origin = origin_m.value_or(std::array<double, 2>{low.x(), low.y()});
     for (Building& building : buildings.list) {
       building.shape = moved(building.shape, {-origin[0], -origin[1], 0});
     }

@@ -94,8 +94,8 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
       const double height = rule.height(feature);
       for (formats::Polygon& part : formats::in_frame(feature.polygon, frame)) {
         const auto [low, high] = ground_below(part.outline, *site.before, base_m);
-        buildings.list.push_back(
-            {feature.id, Prism{std::move(part.outline), std::move(part.holes), low, high + height}});
+        buildings.list.push_back({feature.id, Prism{std::move(part.outline), std::move(part.holes),
+                                                    low, high + height}});
       }
     } catch (const Error& error) {
       throw Error(file + ": '" + feature.id + "': " + error.what());

@@ -65,10 +65,10 @@ struct Dem {
   std::array<double, 2> step;        ///< between posts, likewise
   gdal::Reference crs;               ///< null: longitude and latitude of WGS 84
   std::string crs_name;
-  std::string crs_code;     ///< "EPSG:32632", "" if the file gives none
-  std::string datum;        ///< of the heights: "EGM96 height", "" if the file names none
+  std::string crs_code;          ///< "EPSG:32632", "" if the file gives none
+  std::string datum;             ///< of the heights: "EGM96 height", "" if the file names none
   bool above_ellipsoid = false;  ///< in the file: read_posts brings heights to sea level
-  bool geographic = false;  ///< degrees; otherwise lengths of `unit_m`
+  bool geographic = false;       ///< degrees; otherwise lengths of `unit_m`
   double unit_m = 1;
 
   std::vector<float> numbers;     ///< of the whole file in its order, if they are read already

@@ -275,9 +275,9 @@ Part needed_for(const Dem& dem, const View& view, const Layout& layout) {
   XY high{-altiplan::kInfinity, -altiplan::kInfinity};
   for (int i = 0; i <= kPoints; ++i) {
     for (int j = 0; j <= kPoints; ++j) {
-      const XY at = view.post(
-          layout.origin[0] + (layout.columns - 1) * layout.spacing[0] * i / kPoints,
-          layout.origin[1] + (layout.rows - 1) * layout.spacing[1] * j / kPoints);
+      const XY at =
+          view.post(layout.origin[0] + (layout.columns - 1) * layout.spacing[0] * i / kPoints,
+                    layout.origin[1] + (layout.rows - 1) * layout.spacing[1] * j / kPoints);
       for (std::size_t axis = 0; axis < 2; ++axis) {
         low[axis] = std::min(low[axis], at[axis]);
         high[axis] = std::max(high[axis], at[axis]);
@@ -320,15 +320,15 @@ Layout in_frame(const Dem& dem, const Frame& frame, const Params& params,
       middle = {at[0], at[1], 0};
     }
     const XY corner = view.local(0, 0);
-    const Box box = rectangle_in(view, middle,
-                                 2 * std::hypot(corner[0] - middle.x(), corner[1] - middle.y()));
+    const Box box =
+        rectangle_in(view, middle, 2 * std::hypot(corner[0] - middle.x(), corner[1] - middle.y()));
     print.low = {std::max(box.min.x(), reach.min.x()), std::max(box.min.y(), reach.min.y())};
     print.high = {std::min(box.max.x(), reach.max.x()), std::min(box.max.y(), reach.max.y())};
   }
   if (is_empty(print)) {
-    throw ParameterError(
-        "file", params.file.text + ": covers no rectangle of the world's frame (" + frame.crs() +
-                    (about.empty() ? ")" : ") within 20 km of the mission"));
+    throw ParameterError("file", params.file.text + ": covers no rectangle of the world's frame (" +
+                                     frame.crs() +
+                                     (about.empty() ? ")" : ") within 20 km of the mission"));
   }
   const double columns = std::floor((print.high[0] - print.low[0]) / print.spacing[0]) + 1;
   const double rows = std::floor((print.high[1] - print.low[1]) / print.spacing[1]) + 1;
@@ -347,7 +347,8 @@ template <class FrameAt>
 Layout from_corner(const Dem& dem, const Params& params, const FrameAt& frame_at) {
   const Frame far = frame_at(std::nullopt);
   const Layout there = in_frame(dem, far, params, {});
-  Layout layout = in_frame(dem, frame_at(far.to_lonlat(there.origin[0], there.origin[1])), params, {});
+  Layout layout =
+      in_frame(dem, frame_at(far.to_lonlat(there.origin[0], there.origin[1])), params, {});
   return layout;
 }
 
@@ -370,8 +371,8 @@ Layout in_asked_frame(const Dem& dem, const Params& params, const std::string& c
 
 /// The part of the model within the box, in its own frame; all of it where that is none.
 Box area_of(const Dem& dem, const Layout& own, const Box& box) {
-  const Box all{Vec3(0, 0, 0), Vec3((dem.columns - 1) * own.spacing[0],
-                                    (dem.rows - 1) * own.spacing[1], 0)};
+  const Box all{Vec3(0, 0, 0),
+                Vec3((dem.columns - 1) * own.spacing[0], (dem.rows - 1) * own.spacing[1], 0)};
   Box area = all.intersected(box);
   area.min.z() = area.max.z() = 0;
   return area.is_empty() ? all : area;
@@ -389,9 +390,12 @@ XY scale_at(const Frame& frame, double x, double y) {
   return {along(kStep, 0), along(0, kStep)};
 }
 
-/// Of lengths, beyond which a model is resampled. That rounds summits, which is the worse the steeper
-/// the ground is.
+/// Of lengths, beyond which a model is resampled. That rounds summits, which is the worse the
+/// steeper the ground is.
 constexpr double kMaxError = 0.005;
+/// The same where no mission says which part of a model of degrees is flown over: its posts are
+/// kept, and a warning says what lengths are off by.
+constexpr double kMaxErrorOfDegrees = 0.02;
 
 /// The middle of the positions, and how far it is from the model's.
 struct Judged {
@@ -413,7 +417,8 @@ Layout in_local_frame(const Dem& dem, const Params& params, const altiplan::LonL
   });
 }
 
-/// The model's own axes, true to scale in the middle of the area, if that leaves them wrong by less.
+/// The model's own axes, true to scale in the middle of the area, if that leaves them wrong by
+/// less.
 std::optional<Layout> in_scaled_frame(const Dem& dem, const Layout& own, const Box& area,
                                       double max_error) {
   const Vec3 middle = (area.min + area.max) / 2;
@@ -428,8 +433,8 @@ std::optional<Layout> in_scaled_frame(const Dem& dem, const Layout& own, const B
 
 /// The one rule of the frame that a model defines, about a mission.
 Layout in_frame_about(const Dem& dem, const altiplan::Site& site, const Params& params) {
-  constexpr double kMargin = 1000;     // metres that a mission may leave its positions
-  constexpr double kFar = 1'000'000;   // a mission elsewhere, which is told so
+  constexpr double kMargin = 1000;    // metres that a mission may leave its positions
+  constexpr double kFar = 1'000'000;  // a mission elsewhere, which is told so
   const Layout own = in_own_frame(dem);
   const auto [middle, metres] = judged(dem, site.about);
   if (!(metres < kFar)) {
@@ -458,6 +463,9 @@ Layout in_best_frame(const Dem& dem, const altiplan::Site& site, const Params& p
   if (dem.geographic) {  // by so little that the volume's metres are still the same place
     if (const auto scaled = in_scaled_frame(dem, own, area, kMaxError)) {
       return *scaled;
+    }
+    if (own.frame.scale_error(area) <= kMaxErrorOfDegrees) {
+      return own;
     }
   }
   const Box all = area_of(dem, own, {});
@@ -523,8 +531,8 @@ void bring_to_sea_level(const Dem& dem, Posts& posts) {
         step = {(altiplan::longitude_near(next[0], first[0]) - first[0]) / kNet,
                 (next[1] - first[1]) / kNet};
       }
-      heights[i] -= float(altiplan::geoid_height(first[0] + (i % kNet) * step[0],
-                                                 first[1] + (i % kNet) * step[1]));
+      heights[i] -= float(
+          altiplan::geoid_height(first[0] + (i % kNet) * step[0], first[1] + (i % kNet) * step[1]));
     }
   }
 }
@@ -563,9 +571,9 @@ std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& o
     for (int i = 0; i < columns; ++i) {
       const std::size_t k = std::size_t(i / net);
       const double share = double(i % net) / net;
-      heights.push_back(height_at(
-          own, between(between(south[k], south[k + 1], share),
-                       between(north[k], north[k + 1], share), double(j % net) / net)));
+      heights.push_back(
+          height_at(own, between(between(south[k], south[k + 1], share),
+                                 between(north[k], north[k + 1], share), double(j % net) / net)));
     }
   }
   return heights;

@@ -20,14 +20,13 @@ struct Layout {
 };
 
 /// If the world has a frame, or the scenario requests one, the posts are transformed into it;
-/// otherwise the model's own becomes the world's, unless lengths in it are wrong by more than half a
-/// per cent. Then its axes are scaled to be true in the middle; and where that leaves them wrong
-/// elsewhere, the frame is a conformal one about the middle (Frame::local). About the positions of a
-/// mission, which alone count then, the axes are always scaled.
-/// A site whose `frame_crs` is "own" only looks at a model, in its own axes as they are.
-/// Posts that remain a grid along the frame's axes are kept unchanged; others are resampled
-/// (bilinear) on a grid of the same spacing, over a rectangle that the model covers: 20 km about a
-/// mission, else as large as possible.
+/// otherwise the model's own becomes the world's, unless lengths in it are wrong by more than half
+/// a per cent. Then its axes are scaled to be true in the middle; and where that leaves them wrong
+/// elsewhere, the frame is a conformal one about the middle (Frame::local). About the positions of
+/// a mission, which alone count then, the axes are always scaled. A site whose `frame_crs` is "own"
+/// only looks at a model, in its own axes as they are. Posts that remain a grid along the frame's
+/// axes are kept unchanged; others are resampled (bilinear) on a grid of the same spacing, over a
+/// rectangle that the model covers: 20 km about a mission, else as large as possible.
 Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params);
 
 /// Lowers heights above the ellipsoid by those of the geoid.

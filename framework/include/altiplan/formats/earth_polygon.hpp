@@ -13,10 +13,10 @@ namespace altiplan::formats {
 /// 180th meridian, from the first corner on. A ring around a pole is closed along it.
 ALTIPLAN_API Ring continuous(Ring ring);
 
-/// A ring as its file means it, likewise without jumps at the 180th meridian. An edge over more than 180 degrees of longitude is taken as it is written (RFC 7946,
-/// 3.1.9) where the ring is then drawn counter-clockwise (3.1.6) or is taller than 60 degrees, a
-/// mask of the world; else, and always where the whole ring is then within 20 degrees, the short
-/// way.
+/// A ring as its file means it, likewise without jumps at the 180th meridian. An edge over more
+/// than 180 degrees of longitude is taken as it is written (RFC 7946, 3.1.9) where the ring is then
+/// drawn counter-clockwise (3.1.6) or is taller than 60 degrees, a mask of the world; else, and
+/// always where the whole ring is then within 20 degrees, the short way.
 ALTIPLAN_API Ring unfolded(const Ring& ring);
 /// Likewise, its holes on the turn of the Earth of its outline.
 ALTIPLAN_API Polygon unfolded(Polygon polygon);
