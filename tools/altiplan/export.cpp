@@ -152,7 +152,7 @@ void add_export(App& app, Action& action) {
   command.add_option("-o,--out FILE", arguments.out, "output file (default: stdout)");
   command.add_option("--fence FILE", arguments.fence,
                      "also write the zones as a fence file for Mission Planner (QGC WPL 110)");
-  add_route_export(command, arguments.route);
+  add_route_export(command, arguments.route, true);
   add_mission_options(command, arguments.mission);
   command.add_flag("--flight", arguments.route.flight,
                    "export the flown track instead of the route");

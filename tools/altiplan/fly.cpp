@@ -173,7 +173,7 @@ void add_fly(App& app, Action& action) {
       app, action, "fly", "upload a result's route to a vehicle, follow its flight and judge it",
       fly_result, prepare);
   add_link_options(command, "--link", arguments.link);
-  add_route_export(command, arguments.route);
+  add_route_export(command, arguments.route, false);
   add_no_fence(command, arguments.no_fence);
   command.add_flag("--arm", arguments.arm, "arm the vehicle and start its mission");
   command.add_flag("--command", arguments.command,

@@ -47,11 +47,9 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
 
 }  // namespace
 
-void add_route_export(App& command, RouteExport& route) {
-  command
-      .add_option("file", route.result,
-                  "result file of altiplan run (JSON), or with --terrain a mission (.plan, "
-                  ".waypoints, …)")
+void add_route_export(App& command, RouteExport& route, bool takes_missions) {
+  const std::string missions = takes_missions ? ", or with --terrain a mission (.plan, …)" : "";
+  command.add_option("file", route.result, "result file of altiplan run (JSON)" + missions)
       ->required();
   command
       .add_option("--altitude FROM", route.altitude,

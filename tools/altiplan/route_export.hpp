@@ -18,7 +18,7 @@ struct RouteExport {
 };
 
 /// Adds the result and the options of its items.
-void add_route_export(App& command, RouteExport& route);
+void add_route_export(App& command, RouteExport& route, bool takes_missions);
 /// Throws UsageError for options of a result's items, which a mission has of its own.
 void expect_no_item_options(const RouteExport& route, bool has_fence);
 /// Ends the options; throws UsageError where they cannot be combined.

@@ -51,7 +51,7 @@ void add_upload(App& app, Action& action) {
       "judge a result's route or a mission, upload it to a vehicle and compare what that holds",
       upload_result, prepare);
   add_link_options(command, "--to", arguments.link);
-  add_route_export(command, arguments.route);
+  add_route_export(command, arguments.route, true);
   add_mission_options(command, arguments.mission);
   add_no_fence(command, arguments.no_fence);
   set_example(command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
