@@ -68,11 +68,11 @@ double Flight::grid_ground(const Eigen::Vector2d& at) const {
   const double lon0 = std::floor(lon);
   const int row = int((lat - lat0) * kMetres / spacing) / kNorth;
   const int column = int((lon - lon0) * kMetres * shrink(lat, lat0) / spacing) / kEast;
-  const auto [block_lat, block_lon] = offset(lat0, lon0, row * kNorth, column * kEast);
-  const double north = (lat - block_lat) * kMetres / spacing;
-  const double east = (lon - block_lon) * kMetres * shrink(lat, block_lat) / spacing;
+  const std::pair<double, double> block = offset(lat0, lon0, row * kNorth, column * kEast);
+  const double north = (lat - block.first) * kMetres / spacing;
+  const double east = (lon - block.second) * kMetres * shrink(lat, block.first) / spacing;
   const auto node = [&](double n, double e) {
-    const auto key = offset(block_lat, block_lon, std::floor(north) + n, std::floor(east) + e);
+    const auto key = offset(block.first, block.second, std::floor(north) + n, std::floor(east) + e);
     const auto [found, is_new] = grid_.try_emplace(key, 0);
     if (is_new) {
       const auto [x, y] = world_.frame().to_local(key.second, key.first);
