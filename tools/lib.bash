@@ -44,7 +44,7 @@ build() {
   if [[ -z $cache ]] || ! mkdir -p "$cache" 2>/dev/null || [[ ! -w $cache ]]; then
     export CCACHE_DIR=$root/build/ccache
   fi
-  if [[ ! -x $root/build/$preset/bin/altiplan ]]; then
+  if [[ ! -x $root/build/$preset/bin/altiplan-run ]]; then
     say "building into build/$preset; the first time takes some minutes"
   else
     say "building what changed into build/$preset"

@@ -32,6 +32,10 @@ std::pair<App&, Arguments&> add_command(
   return {*command, *arguments};
 }
 
+/// Does what the command line says, with the commands that `add_commands` adds; returns the exit
+/// code.
+int run_program(int argc, char** argv, const std::function<void(App&, Action&)>& add_commands);
+
 // Each adds its subcommand, which sets the action when it is called.
 void add_run(App& app, Action& action);
 void add_go(App& app, Action& action);

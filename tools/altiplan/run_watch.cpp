@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "commands.hpp"
-#include "study/figures/text.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::cli {
 namespace {
 
-using study::report::grouped;
-using study::report::readable;
+using host::grouped;
+using host::readable;
 
 /// "812", "12.3 k", "4.56 M".
 std::string rough(std::uint64_t count) {

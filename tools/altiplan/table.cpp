@@ -5,12 +5,11 @@
 #include <numeric>
 
 #include "host/base/utf8.hpp"
-#include "study/figures/text.hpp"
 
 namespace altiplan::cli {
 namespace {
 
-using study::report::characters;
+using host::characters;
 
 /// A last column of text is wrapped to that many characters at least.
 constexpr std::size_t kMinWrapped = 24;

@@ -44,6 +44,11 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || surrogate || too_large ? 0 : length;
 }
 
+std::size_t characters(std::string_view text) {
+  return std::size_t(
+      std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+}
+
 std::string printable(std::string_view bytes, bool keep_lines) {
   std::string out;
   out.reserve(bytes.size());

@@ -11,6 +11,9 @@ namespace altiplan::host {
 /// none.
 std::size_t utf8_length(std::string_view text);
 
+/// Number of UTF-8 characters.
+std::size_t characters(std::string_view text);
+
 /// Text of a plugin or a file made safe for terminals, HTML and XML: valid UTF-8, with U+FFFD in
 /// place of every invalid byte, and a blank in place of control characters (line ends and tabs too,
 /// unless they are kept).

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace altiplan::host {
 
@@ -49,8 +50,33 @@ std::string with_commas(std::string digits) {
   return digits;
 }
 
+std::string grouped(std::size_t count) { return with_commas(std::to_string(count)); }
+
+std::string readable(double number, int digits) {
+  if (!std::isfinite(number)) {
+    return "–";
+  }
+  if (number == 0) {
+    return "0";
+  }
+  // The power of ten after rounding: 9.9999 is 10.0 in three digits.
+  std::array<char, 64> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number,
+                                 std::chars_format::scientific, digits - 1);
+  const std::string scientific(text.data(), end.ptr);
+  const int power = std::stoi(scientific.substr(scientific.find('e') + 1));
+  if (power < -4 || power >= 9) {
+    return scientific;
+  }
+  std::string plain = with_decimals(number, std::max(0, digits - 1 - power));
+  if (number == std::round(number) && plain.find('.') != std::string::npos) {
+    plain.resize(plain.find('.'));  // counts are written as counts
+  }
+  return with_commas(plain);
+}
+
 std::string counted(std::size_t count, std::string_view what) {
-  return with_commas(std::to_string(count)) + " " + std::string(what) + (count == 1 ? "" : "s");
+  return grouped(count) + " " + std::string(what) + (count == 1 ? "" : "s");
 }
 
 std::string place(const Vec3& p) {

@@ -25,6 +25,12 @@ std::string rounded_text(double number, int decimals);
 /// With a comma between groups of three digits: "-12,345.6".
 std::string with_commas(std::string digits);
 
+/// "1,234".
+std::string grouped(std::size_t count);
+
+/// To that many significant digits, a dash if not finite: "1,234", "0.0123", "1.2e-9".
+std::string readable(double number, int digits = 4);
+
 /// "1 pair", "2,000 pairs".
 std::string counted(std::size_t count, std::string_view what);
 

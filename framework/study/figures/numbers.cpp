@@ -51,26 +51,6 @@ std::string exact(double value) {
   return {text, done.ptr};
 }
 
-std::string readable(double value, int digits) {
-  if (!std::isfinite(value)) {
-    return std::string(kDash);
-  }
-  if (value == 0) {
-    return "0";
-  }
-  // The power of ten after rounding: 9.9999 is 10.0 in three digits.
-  const std::string scientific = to_text(value, std::chars_format::scientific, digits - 1);
-  const int power = std::stoi(scientific.substr(scientific.find('e') + 1));
-  if (power < -4 || power >= 9) {
-    return scientific;
-  }
-  std::string text = to_text(value, std::chars_format::fixed, std::max(0, digits - 1 - power));
-  if (value == std::round(value) && text.find('.') != std::string::npos) {
-    text.resize(text.find('.'));  // counts are written as counts
-  }
-  return host::with_commas(text);
-}
-
 bool is_straight(std::string_view metric, double value) {
   constexpr double kStraight = 1e8;  // metres, farther than anything flies
   return metric.ends_with("radius_m") && std::isfinite(value) && std::abs(value) >= kStraight;
@@ -94,8 +74,6 @@ std::string percent(double share) {
   const std::string text = to_text(100 * share, std::chars_format::fixed, 1);
   return (text.ends_with(".0") ? text.substr(0, text.size() - 2) : text) + " %";
 }
-
-std::string grouped(std::size_t count) { return host::with_commas(std::to_string(count)); }
 
 std::string p_text(double p) {
   if (!std::isfinite(p)) {

@@ -104,11 +104,6 @@ std::string slug(std::string_view text) {
   return out.empty() ? "unnamed" : out.substr(0, 80);
 }
 
-std::size_t characters(std::string_view text) {
-  return std::size_t(
-      std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
-}
-
 std::string shortened(const std::string& text, std::size_t max_characters) {
   const std::size_t count = characters(text);
   if (count <= max_characters) {

@@ -13,8 +13,11 @@ namespace altiplan::study::report {
 // Names of scenarios and messages of plugins may contain any bytes. All text in a file of the
 // report passes through one of these functions.
 
+using host::characters;
 using host::counted;
+using host::grouped;
 using host::printable;
+using host::readable;
 
 /// For HTML and SVG, between tags and within quoted attributes.
 std::string html(std::string_view text);
@@ -33,13 +36,9 @@ std::string slug(std::string_view text);
 
 /// Shortened to that many characters, with an ellipsis in the middle; for printable text.
 std::string shortened(const std::string& text, std::size_t max_characters);
-/// Number of UTF-8 characters.
-std::size_t characters(std::string_view text);
 
 /// The shortest text that reads back as this number; "" for NaN.
 std::string exact(double value);
-/// To that many significant digits, a dash if not finite: "1,234", "0.0123", "1.2e-9".
-std::string readable(double value, int digits = 4);
 /// As `readable`, without rounding noise: a turn of 1e-13 degrees is "0", a radius of 1e15 metres
 /// "straight".
 std::string readable_value(std::string_view metric, double value, int digits = 4);
@@ -49,8 +48,6 @@ double without_noise(std::string_view metric, double value);
 bool is_straight(std::string_view metric, double value);
 /// "98.2 %".
 std::string percent(double share);
-/// "1,234".
-std::string grouped(std::size_t count);
 /// A p-value: "0.013", "< 0.0001".
 std::string p_text(double p);
 /// "p = 0.013", "p < 0.0001".
