@@ -237,5 +237,45 @@ class Tidy(InAFolder):
         self.assertLess(len(calls), 100)
 
 
+class Unbuilt(unittest.TestCase):
+    """What stands at bin/altiplan until the program is built, in a tree whose cmake is one of ours."""
+
+    def setUp(self):
+        made = tempfile.TemporaryDirectory()
+        self.addCleanup(made.cleanup)
+        self.tree = pathlib.Path(made.name).resolve()
+        (self.tree / "lib/altiplan/plugins").mkdir(parents=True)
+        (self.tree / "bin").mkdir()
+        template = (SOURCES / "tools/altiplan/first/unbuilt.sh.in").read_text()
+        self.write("unbuilt.sh", template.replace("@CMAKE_BINARY_DIR@", str(self.tree)))
+        self.program = self.tree / "bin/altiplan"
+        self.program.symlink_to(self.tree / "unbuilt.sh")
+
+    def write(self, name, text):
+        path = self.tree / name
+        path.write_text(text)
+        path.chmod(0o755)
+
+    def cmake(self, script):
+        self.write("cmake", "#!/bin/sh\n" + script)
+        return {"PATH": f"{self.tree}:{os.environ['PATH']}"}
+
+    def test_builds_and_calls_the_program(self):
+        built = f"printf '#!/bin/sh\\necho \"$#: $*\"\\nexit 3\\n' > {self.program}; chmod +x {self.program}"
+        path = self.cmake(f'[ "$*" = "--build {self.tree} --target altiplan_cli" ] || exit 1\n{built}\n')
+        self.assertEqual(call(self.program, "a b", "c", **path),
+                         (3, "2: a b c\naltiplan: building the program (needed for the first time)\n"))
+        self.assertEqual(call(self.program, "d", **path), (3, "1: d\n"))
+
+    def test_a_build_that_fails_is_tried_again(self):
+        path = self.cmake("echo no compiler; exit 1\n")
+        for _ in range(2):
+            code, printed = call(self.program, "run", **path)
+            self.assertEqual(code, 4, printed)
+            self.assertIn(f"building it failed; {self.tree}/unbuilt.log shows why", printed)
+            self.assertEqual((self.tree / "unbuilt.log").read_text(), "no compiler\n")
+            self.assertTrue(self.program.is_symlink())
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
