@@ -154,11 +154,77 @@ TEST(Airspace, RefusesZonesWithoutAPlace) {
             "and 1000 km, found -3.000000 m (zone 'Z1 (Zone)')");
   EXPECT_NE(refusal(ed269("\"center\": [7, 46]", "\"center\": [46, 207]")), "");
   EXPECT_NE(refusal(ed269("\"Circle\"", "\"Square\"")), "");
-  EXPECT_EQ(refusal(openair("XX 5")).substr(0, 30), "file:5: unknown record 'XX', e");
+  EXPECT_EQ(refusal(openair("DX 5")).substr(0, 30), "file:5: unknown record 'DX', e");
+  EXPECT_EQ(refusal(openair("X 5")).substr(0, 29), "file:5: unknown record 'X', e");
   EXPECT_EQ(refusal(openair("DC 5")), "file:5: DC needs a centre, expected V X=… before it");
   EXPECT_NE(refusal(openair("DP 46:61:00 N 007:00:00 E")), "");
   EXPECT_NE(refusal(openair("AN Other")).find("a second AN"), std::string::npos);
-  EXPECT_NE(refusal("AC R\nAN Zone\nAL GND\nAH FL100\n").find("no area"), std::string::npos);
+  EXPECT_EQ(refusal("AC A\nAN W1\nAL GND\nAH FL100\nDY 46:00:00 N 007:00:00 E\n"),
+            "file:5: airspace 'W1' of line 1: DY needs a width, expected V W=… before it");
+}
+
+TEST(Airspace, SkipsWhatHasNoAreaByNameAndReadsTheRest) {
+  const std::string rest = openair("");
+  for (const std::string outline :
+       {"", "DP 46:00:00 N 008:00:00 E\n", "DP 46:00:00 N 008:00:00 E\nDP 46:10:00 N 008:00:00 E\n",
+        "DP 46:00:00 N 008:00:00 E\nDP 46:10:00 N 008:00:00 E\nDP 46:00:00 N 008:00:00 E\n"}) {
+    const Airspace airspace = read("AC P\nAN AXIS\nAL GND\nAH FL100\n" + outline + rest);
+    ASSERT_EQ(airspace.zones.size(), 1U) << outline;
+    EXPECT_EQ(airspace.zones[0].name, "Zone");
+    EXPECT_TRUE(noted(airspace,
+                      "outline without an area (three corners or more that are not in "
+                      "line), skipped: 'AXIS'"));
+  }
+  const Airspace other = read(openair("XX 5"));
+  EXPECT_EQ(other.zones.size(), 1U);
+  EXPECT_TRUE(noted(other, "record XX, not read: 'Zone'"));
+  const std::string flat = "[[7, 46], [7.1, 46], [7.2, 46], [7, 46]]";
+  const Airspace zones = read(ed269("{\"type\": \"Circle\", \"center\": [7, 46], \"radius\": 3000}",
+                                    "{\"type\": \"Polygon\", \"coordinates\": [" + flat + "]}"));
+  EXPECT_TRUE(zones.zones.empty());
+  EXPECT_TRUE(noted(zones, "skipped: 'Z1 (Zone)'"));
+  EXPECT_NE(refusal(R"({"features": [{"identifier": "Z", "restriction": "PROHIBITED",
+      "applicability": [], "geometry": []}]})")
+                .find("features.0.geometry: expected a list of volumes"),
+            std::string::npos);
+}
+
+TEST(Airspace, AnAirwayIsAsWideAsItSays) {
+  // Along a meridian, 5 NM wide: 4,630 m to either side.
+  const Airspace airway = read(
+      "V W=5\nAC A\nAN W1\nAL 1000 ft\nAH FL100\n"
+      "DY 46:00:00 N 007:00:00 E\nDY 46:30:00 N 007:00:00 E\n");
+  const double degree = 111'319.5 * std::cos(radians(46.25));
+  const auto closed = [&](double lon, double lat) {
+    return holds(airway, {lon, lat, 600, 600}, kSaturday);
+  };
+  for (const double side : {-1, 1}) {
+    EXPECT_TRUE(closed(7 + side * 4600 / degree, 46.25));
+    EXPECT_FALSE(closed(7 + side * 4670 / degree, 46.25));
+  }
+  EXPECT_TRUE(closed(7, 46 - 4600 / 111'150.0));  // rounded ends
+  EXPECT_FALSE(closed(7, 46 - 4670 / 111'150.0));
+}
+
+TEST(Airspace, Ed269StandsWithinGeoJsonToo) {
+  const auto zones = [](const std::string& restriction, const std::string& limits) {
+    return read(R"({"type": "FeatureCollection", "features": [{"type": "Feature", "geometry":
+      {"type": "Polygon", "coordinates": [[[7, 46], [7.1, 46], [7.1, 46.1], [7, 46.1], [7, 46]]]},
+      "properties": {"identifier": "Z1", "type": "COMMON", "restriction": ")" +
+                restriction + R"(", "zoneAuthority": [], "geometry": )" + limits +
+                R"(, "applicability": [{"permanent": "YES", "schedule": []}]}}]})");
+  };
+  const std::string limits = R"({"uomDimensions": "M", "lowerLimit": 121,
+      "lowerVerticalReference": "AGL", "upperLimit": 500, "upperVerticalReference": "AMSL"})";
+  const Airspace closed = zones("PROHIBITED", limits);
+  EXPECT_EQ(closed.format, Airspace::Format::ed269);
+  ASSERT_EQ(closed.zones.size(), 1U);
+  EXPECT_EQ(closed.zones[0].restriction, Restriction::keep_out);
+  EXPECT_EQ(closed.zones[0].volumes[0].lower, (ZoneLimit{Datum::ground, 121}));
+  EXPECT_EQ(closed.zones[0].volumes[0].upper, (ZoneLimit{Datum::sea, 500}));
+  EXPECT_TRUE(closed.notes.empty()) << closed.notes[0];
+  EXPECT_EQ(zones("NO_RESTRICTION", limits).zones[0].restriction, Restriction::inform);
+  EXPECT_EQ(zones("REQ_AUTHORISATION", "[" + limits + "]").zones[0].restriction, Restriction::ask);
 }
 
 TEST(Airspace, OpenAirHasUnitsTimesAndTypes) {

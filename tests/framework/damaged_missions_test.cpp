@@ -172,6 +172,8 @@ TEST(DamagedMissions, Waypoints) {
        {"*", "47.1 8.5\n47.2 8.6\n", "in the old format"},
        {"\t50\t1", "\t50\t1\t9", "m.waypoints:4: expected 12 columns, found 13"},
        {"2\t0\t3\t16", "3\t0\t3\t16", "m.waypoints:4: expected item 2, found 3"},
+       {"\n0\t1", "\n1\t1",
+        "m.waypoints:2: expected item 0, found 1: the file has no home position, which is item 0"},
        {"2\t0\t3\t16", "x\t0\t3\t16", "expected a number as number, found 'x'"},
        {"2\t0\t3\t16", "2\t0\t2\t16", "expected the frame 0 (sea level)"},
        {"2\t0\t3\t16", "2\t0\t3.5\t16", "as frame"},

@@ -154,7 +154,7 @@ FileInfo features_info(const fs::path& file, Registry& registry) {
   if (properties.count("height") > 0) {
     info.kind = "buildings";
     info.scenario = {"environment:", entry("city", file, "")};
-  } else if (!json.features.empty()) {
+  } else if (!json.features.empty() || !json.surroundings.empty()) {
     info = zones_info(file, std::nullopt, registry);
   }
   std::string list;

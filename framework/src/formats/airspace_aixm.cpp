@@ -175,6 +175,7 @@ class AixmReader {
       zone.id = printable(identifier(airspace));
     }
     const std::string label = zone.label();
+    bool has_volume = false;
     for (const XmlNode& component : slice.children()) {
       if (local_name(component) != "geometryComponent") {
         continue;
@@ -186,12 +187,15 @@ class AixmReader {
       }
       const XmlNode volume = child(child(part, "theAirspaceVolume"), "AirspaceVolume");
       if (volume) {
+        has_volume = true;
         read_volume(volume, zone);
       }
     }
     if (zone.volumes.empty()) {
-      doubts_.add("time slice without a volume, skipped", label);
-      return false;
+      if (!has_volume) {
+        doubts_.add("time slice without a volume, skipped", label);
+      }
+      return has_volume;
     }
     // AIXM's W is a warning area.
     zone.restriction = restriction_of(zone.type == "W" ? "WARNING" : zone.type, label, doubts_);

@@ -28,6 +28,9 @@ std::optional<Format> format_of_feature(const Json& feature) {
   if (geometry.is_array() || has_any(feature, {"uomDimensions", "applicability"})) {
     return Format::ed269;
   }
+  if (has_any(properties, {"restriction"}) && has_any(properties, {"geometry", "applicability"})) {
+    return Format::ed269;  // within GeoJSON
+  }
   if (has_any(geometry, {"layer", "extent"}) ||
       has_any(properties, {"limitedApplicability", "restrictionConditions", "zoneAuthority"})) {
     return Format::ed318;

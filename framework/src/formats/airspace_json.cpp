@@ -179,7 +179,7 @@ ZonePeriod period_of(const JsonNode& node, const Target& to) {
     period.from = period_start(text_at(node, "startDateTime"), label, to.doubts);
     period.until = period_end(text_at(node, "endDateTime"), label, to.doubts);
   }
-  if (node.has("schedule") && !node.at("schedule").json().is_null()) {
+  if (node.has("schedule") && !node.at("schedule").json().empty()) {
     if (auto hours = hours_at(node.at("schedule"))) {
       period.hours = std::move(*hours);
     } else {
@@ -209,29 +209,46 @@ void read_periods(const JsonNode& node, const char* key, const Target& to) {
   }
 }
 
+/// A volume; within GeoJSON its outline may be the geometry of the feature.
+void read_ed269_volume(const JsonNode& volume, const JsonNode& feature, const Target& to) {
+  const std::string label = to.zone.label();
+  const ZoneLimit lower = lower_limit(
+      limit_at(volume, "lowerLimit", "lowerVerticalReference", "uomDimensions"), label, to.doubts);
+  const ZoneLimit upper = upper_limit(
+      limit_at(volume, "upperLimit", "upperVerticalReference", "uomDimensions"), label, to.doubts);
+  const bool has_own = volume.has("horizontalProjection") || !feature.has("properties");
+  const JsonNode projection = has_own ? volume.at("horizontalProjection") : feature.at("geometry");
+  const std::string type = text_at(projection, "type");
+  if (type == "Circle") {
+    to.add_circle(position(projection.at("center")), projection.at("radius"), lower, upper);
+  } else if (type == "Polygon" || type == "MultiPolygon") {
+    to.add_polygons(projection, lower, upper);
+  } else {
+    projection.wrong(has_own ? "a horizontalProjection of type Circle, Polygon or MultiPolygon"
+                             : "a geometry of type Polygon or MultiPolygon");
+  }
+}
+
+/// A zone of ED-269, as its own JSON or in the properties of GeoJSON, which national files have.
 void read_ed269(const JsonNode& feature, const Target& to) {
+  const JsonNode fields = feature.has("properties") ? feature.at("properties") : feature;
   Zone& zone = to.zone;
-  set_names(zone, text_at(feature, "identifier"), name_at(feature, "name"));
-  zone.type = text_at(feature, "restriction");
-  read_periods(feature, "applicability", to);
-  const JsonNode geometry = feature.at("geometry");
-  for (std::size_t n = 0; n < geometry.size(); ++n) {
-    const JsonNode volume = geometry.at(n);
-    const ZoneLimit lower =
-        lower_limit(limit_at(volume, "lowerLimit", "lowerVerticalReference", "uomDimensions"),
-                    zone.label(), to.doubts);
-    const ZoneLimit upper =
-        upper_limit(limit_at(volume, "upperLimit", "upperVerticalReference", "uomDimensions"),
-                    zone.label(), to.doubts);
-    const JsonNode projection = volume.at("horizontalProjection");
-    const std::string type = text_at(projection, "type");
-    if (type == "Circle") {
-      to.add_circle(position(projection.at("center")), projection.at("radius"), lower, upper);
-    } else if (type == "Polygon" || type == "MultiPolygon") {
-      to.add_polygons(projection, lower, upper);
-    } else {
-      projection.wrong("a horizontalProjection of type Circle, Polygon or MultiPolygon");
+  set_names(zone, text_at(fields, "identifier"), name_at(fields, "name"));
+  zone.type = text_at(fields, "restriction");
+  read_periods(fields, "applicability", to);
+  if (fields.has("geometry") && fields.at("geometry").json().is_array()) {
+    const JsonNode volumes = fields.at("geometry");
+    if (volumes.size() == 0) {
+      volumes.wrong("a list of volumes");
     }
+    for (std::size_t n = 0; n < volumes.size(); ++n) {
+      read_ed269_volume(volumes.at(n), feature, to);
+    }
+  } else {
+    static const Json kNone = Json::object();
+    read_ed269_volume(
+        fields.has("geometry") ? fields.at("geometry") : JsonNode(kNone, fields.place()), feature,
+        to);
   }
 }
 
@@ -241,6 +258,9 @@ void read_ed318_geometry(const JsonNode& geometry, const Json& outer, const Targ
   const std::string type = text_at(geometry, "type");
   if (type == "GeometryCollection") {
     const JsonNode list = geometry.at("geometries");
+    if (list.size() == 0) {
+      list.wrong("a list of geometries");
+    }
     for (std::size_t n = 0; n < list.size(); ++n) {
       read_ed318_geometry(list.at(n), json, to);
     }
@@ -311,12 +331,12 @@ void read_json_feature(const JsonNode& feature, Airspace::Format format, Airspac
   };
   try {
     read();
-    if (zone.volumes.empty()) {
-      feature.wrong("a geometry with an area");
-    }
   } catch (const Error& error) {
     const std::string label = zone.label();
     throw Error(error.what() + (label.empty() ? "" : " (zone '" + label + "')"));
+  }
+  if (zone.volumes.empty()) {
+    return;
   }
   zone.restriction = restriction_of(zone.type, zone.label(), doubts);
   to.zones.push_back(std::move(zone));

@@ -86,6 +86,8 @@ class OpenAirReader {
       *field = {true, printable(value)};
     } else if (record == "AA") {
       activations_.push_back(printable(value.substr(0, value.find_first_of(" \t;"))));
+    } else if (record == "DY") {
+      airway_.push_back(only_coordinate(value));
     } else if (record == "DP") {
       outline_.emplace_back(only_coordinate(value));
     } else if (record == "DA") {
@@ -95,10 +97,20 @@ class OpenAirReader {
       take_arc_between(value);
     } else if (record == "DC") {
       circles_.push_back(circle_ring(centre("DC"), numbers(value, 1)[0] * kNauticalMile));
+    } else if (is_other(record)) {
+      doubts_.add("record " + record + ", not read", label());
     } else if (record != "AF" && record != "AG" && record != "AT" && record != "AX") {
-      throw Error("unknown record '" + printable(record) +
-                  "', expected AC, AN, AL, AH, AY, AI, AA, AF, AG, AT, AX, V, DP, DA, DB or DC");
+      throw Error(
+          "unknown record '" + printable(record) +
+          "', expected AC, AN, AL, AH, AY, AI, AA, AF, AG, AT, AX, V, DP, DA, DB, DC or DY");
     }
+  }
+
+  /// Of another description of the format, but not of the outline: two letters, without D first.
+  static bool is_other(const std::string& record) {
+    const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+    return record.size() == 2 && letter(record[0]) && letter(record[1]) && record[0] != 'D' &&
+           record != "AF" && record != "AG" && record != "AT" && record != "AX";
   }
 
   Field* field_of(const std::string& record) {
@@ -123,7 +135,10 @@ class OpenAirReader {
         throw Error("expected V D=+ or V D=-, found '" + printable(value) + "'");
       }
       clockwise_ = clockwise;
-    } else if (!scan.take('W') && !scan.take('Z')) {
+    } else if (scan.take('W')) {
+      expect_equals(scan);
+      airway_width_m_ = numbers(scan.rest(), 1)[0] * kNauticalMile;
+    } else if (!scan.take('Z')) {
       throw Error("unknown variable '" + printable(value) + "', expected X, D, W or Z");
     }
   }
@@ -179,6 +194,7 @@ class OpenAirReader {
     activations_.clear();
     outline_.clear();
     circles_.clear();
+    airway_.clear();
   }
 
   std::string label() const { return name_.given ? name_.text : "line " + std::to_string(start_); }
@@ -195,9 +211,17 @@ class OpenAirReader {
     zone.type = kind_.given ? type_ + " " + kind_.text : type_;
     zone.restriction = restriction(zone.label());
     std::vector<Polygon> polygons;
-    if (!outline_.empty() || circles_.empty()) {
+    if (!airway_.empty()) {
+      if (!airway_width_m_) {
+        throw Error("airspace '" + zone.label() + "' of line " + std::to_string(start_) +
+                    ": DY needs a width, expected V W=… before it");
+      }
+      polygons = corridor_of(airway_, *airway_width_m_ / 2);
+    }
+    if (!outline_.empty() || (circles_.empty() && airway_.empty())) {
       try {
-        polygons = cover_of(outline_, zone.label(), doubts_);
+        std::vector<Polygon> cover = cover_of(outline_, zone.label(), doubts_);
+        std::move(cover.begin(), cover.end(), std::back_inserter(polygons));
       } catch (const Error& error) {
         throw Error("airspace '" + zone.label() + "' of line " + std::to_string(start_) + ": " +
                     error.what());
@@ -205,6 +229,9 @@ class OpenAirReader {
     }
     for (Ring& circle : circles_) {
       polygons.push_back({std::move(circle), {}});
+    }
+    if (polygons.empty()) {
+      return;
     }
     const ZoneLimit lower = lower_limit(openair_limit(lower_.text), zone.label(), doubts_);
     const ZoneLimit upper = upper_limit(openair_limit(upper_.text), zone.label(), doubts_);
@@ -253,6 +280,7 @@ class OpenAirReader {
   Doubts doubts_;
   std::optional<Point2> centre_;  ///< kept from one airspace to the next, as the format has it
   bool centre_is_here_ = false;
+  std::optional<double> airway_width_m_;  ///< kept likewise
   bool clockwise_ = true;
   // The airspace being read.
   bool open_ = false;
@@ -267,6 +295,7 @@ class OpenAirReader {
   std::vector<std::string> activations_;
   Outline outline_;
   std::vector<Ring> circles_;
+  Ring airway_;  ///< corners of its centre line
 };
 }  // namespace
 

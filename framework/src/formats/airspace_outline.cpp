@@ -20,6 +20,9 @@ constexpr double kEdge = 0.05;
 constexpr double kSamePlace = 0.06;
 constexpr double kGap = 100;
 
+constexpr const char* kNoArea =
+    "outline without an area (three corners or more that are not in line), skipped";
+
 /// How chords run: along the arc's inner side, or around its outer side.
 /// Few: as inner ones, no more than the ring's orientation takes.
 enum class Chords { inner, outer, few };
@@ -290,7 +293,8 @@ std::vector<Polygon> cover_of(const Outline& given, const std::string& zone, Dou
   const Outline outline = without_gaps(given, kSamePlace, Keep::arcs);
   Ring ring = fitted_ring(outline, false);
   if (ring.size() < 3 || is_flat({ring, {}})) {
-    throw Error("the outline has no area: expected three corners or more that are not in line");
+    doubts.add(kNoArea, zone);
+    return {};
   }
   if (polygon_problem({ring, {}}).empty()) {
     return {{std::move(ring), {}}};
@@ -309,7 +313,8 @@ std::vector<Polygon> cover_of(const Outline& given, const std::string& zone, Dou
     add_loops(ring_of(outline, [](const OutlineArc&) { return Chords::inner; }), loops);
   }
   if (loops.empty()) {
-    throw Error("the outline has no area: expected three corners or more that are not in line");
+    doubts.add(kNoArea, zone);
+    return {};
   }
   doubts.add("outline meets itself, closed in all of its loops", zone);
   return loops;

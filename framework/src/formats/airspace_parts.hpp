@@ -49,12 +49,21 @@ void expect_lonlat(const Point2& p);
 void expect_radius(double metres);
 void expect_bearing(double degrees);
 
-/// Polygons that cover the outline: one, or several if it meets itself, which is reported.
+/// Polygons that cover the outline: one, several if it meets itself, none if it has no area; the
+/// last two are reported.
 std::vector<Polygon> cover_of(const Outline& outline, const std::string& zone, Doubts& doubts);
 /// True if the outline does not meet itself, apart from gaps between arcs and corners.
 bool is_simple(const Outline& outline);
 /// A circle around its disc, or within it.
 Ring circle_ring(const Point2& centre, double radius_m, bool within = false);
+/// What lies within a distance of a line whose edges are straight in longitude and latitude, or of
+/// a point: polygons that overlap, a metre per kilometre wider at most. Throws Error unless the
+/// distance is between 0 and 1000 km.
+std::vector<Polygon> corridor_of(const Ring& line, double distance_m);
+/// How far a point or a line reaches, metres, if the property with this name says that, such as
+/// "Bufferzone": "5 km"; else 0. A number without a unit is in metres from 100 on, below in
+/// kilometres, which closes more. Throws Error if it is no length.
+double reach_of(const std::string& property, const std::string& value);
 /// Cuts holes out of the polygon as far as that is certain.
 void cut_holes(Polygon& polygon, const std::vector<Ring>& holes, const std::string& zone,
                Doubts& doubts);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "airspace_parts.hpp"
 #include "altiplan/error.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/input_file.hpp"
@@ -21,21 +22,25 @@ std::string property_text(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+Point2 read_position(const Json& point) {
+  if (!point.is_array() || point.size() < 2 || !point[0].is_number() || !point[1].is_number()) {
+    throw Error("expected a position [longitude, latitude], found " + short_text(point));
+  }
+  const Point2 p{point[0].get<double>(), point[1].get<double>()};
+  if (!(std::abs(p[0]) <= 180 && std::abs(p[1]) <= 90)) {
+    throw Error("expected longitude in [-180, 180] and latitude in [-90, 90], found " +
+                short_text(point));
+  }
+  return p;
+}
+
 Ring read_ring(const Json& points) {
   if (!points.is_array()) {
     throw Error("a ring needs a list of positions, found " + short_text(points));
   }
   Ring ring;
   for (const Json& point : points) {
-    if (!point.is_array() || point.size() < 2 || !point[0].is_number() || !point[1].is_number()) {
-      throw Error("expected a position [longitude, latitude], found " + short_text(point));
-    }
-    const Point2 p{point[0].get<double>(), point[1].get<double>()};
-    if (!(std::abs(p[0]) <= 180 && std::abs(p[1]) <= 90)) {
-      throw Error("expected longitude in [-180, 180] and latitude in [-90, 90], found " +
-                  short_text(point));
-    }
-    ring.push_back(p);
+    ring.push_back(read_position(point));
   }
   if (!ring.empty() && ring.front() != ring.back()) {
     throw Error("a ring must end where it starts, " + short_text(points.front()) + "; it ends at " +
@@ -84,11 +89,65 @@ std::map<std::string, std::string> properties_of(const Json& feature) {
 std::string id_of(const Json& feature, std::size_t n) {
   const Json* id = feature.contains("id") ? &feature["id"] : nullptr;
   if (id == nullptr && feature.contains("properties") && feature["properties"].is_object()) {
-    const auto name = feature["properties"].find("name");
-    id = name == feature["properties"].end() ? nullptr : &*name;
+    const Json& properties = feature["properties"];
+    for (const char* key : {"name", "title"}) {
+      const auto name = properties.find(key);
+      id = id == nullptr && name != properties.end() && !name->is_null() ? &*name : id;
+    }
   }
   const std::string text = id == nullptr || id->is_null() ? "" : property_text(*id);
   return text.empty() ? std::to_string(n) : text;
+}
+
+/// Points and lines have an area if a property says how far they reach.
+bool read_surroundings(const Json& feature, const std::string& id, const std::string& type,
+                       GeoJson& to) {
+  const Json none;
+  const Json& geometry = feature["geometry"];
+  const Json& coordinates = geometry.contains("coordinates") ? geometry["coordinates"] : none;
+  std::vector<Ring> lines;
+  if (type == "Point") {
+    lines.push_back({read_position(coordinates)});
+  } else if (!coordinates.is_array()) {
+    throw Error("a " + type + " needs a list, found " + short_text(coordinates));
+  } else if (type == "MultiPoint" || type == "LineString") {
+    for (const Json& position : coordinates) {
+      const bool begins = lines.empty() || type == "MultiPoint";
+      begins ? lines.push_back({read_position(position)})
+             : lines.back().push_back(read_position(position));
+    }
+  } else {
+    for (const Json& line : coordinates) {
+      if (!line.is_array()) {
+        throw Error("a line needs a list of positions, found " + short_text(line));
+      }
+      lines.emplace_back();
+      for (const Json& position : line) {
+        lines.back().push_back(read_position(position));
+      }
+    }
+  }
+  double reach = 0;
+  if (feature.contains("properties") && feature["properties"].is_object()) {
+    for (const auto& [name, value] : feature["properties"].items()) {
+      reach = std::max(reach, value.is_null() ? 0 : reach_of(name, property_text(value)));
+    }
+  }
+  for (const Ring& line : lines) {
+    if (reach > 0) {
+      for (Polygon& part : corridor_of(line, reach)) {
+        to.surroundings.push_back({id, std::move(part), properties_of(feature)});
+      }
+    }
+  }
+  if (reach == 0) {
+    const auto first =
+        std::find_if(lines.begin(), lines.end(), [](const Ring& r) { return !r.empty(); });
+    to.flat.push_back(first == lines.end() ? id
+                                           : id + " at " + short_text((*first)[0][0]) + ", " +
+                                                 short_text((*first)[0][1]));
+  }
+  return reach > 0;
 }
 
 // Reads the feature's areas; false if it has none.
@@ -101,10 +160,9 @@ bool read_feature(const Json& feature, const std::string& id, GeoJson& to) {
     throw Error("expected a geometry with a type, found " + short_text(*geometry));
   }
   const std::string type = (*geometry)["type"].get<std::string>();
-  for (const char* without_area : {"Point", "MultiPoint", "LineString", "MultiLineString"}) {
-    if (type == without_area) {
-      return false;
-    }
+  const bool is_point = type == "Point" || type == "MultiPoint";
+  if (is_point || type == "LineString" || type == "MultiLineString") {
+    return read_surroundings(feature, id, type, to);
   }
   if (type != "Polygon" && type != "MultiPolygon") {
     throw Error("expected a Polygon or MultiPolygon, found the geometry type '" + type + "'");

@@ -2,6 +2,7 @@
 #include <map>
 #include <vector>
 
+#include "airspace_parts.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
 #include "xml_parts.hpp"
 
@@ -96,6 +97,8 @@ class KmlReader {
     const std::string_view name = local_name(node);
     if (name == "Polygon") {
       add_polygon(node);
+    } else if ((name == "LineString" || name == "Point") && add_surroundings(node)) {
+      return true;
     } else if (name == "LineString") {
       ++lines_;
       add_points(node, line_);
@@ -148,6 +151,30 @@ class KmlReader {
                               0,
                               "point " + std::to_string(points.items.size() + 1)});
     }
+  }
+
+  /// A point or a line is a zone if its data say how far it reaches.
+  bool add_surroundings(const pugi::xml_node& geometry) {
+    const Placemark placemark(geometry);
+    double reach = 0;
+    for (const auto& [name, value] : placemark.data) {
+      reach = std::max(reach, reach_of(name, value));
+    }
+    if (reach == 0) {
+      return false;
+    }
+    Ring line;
+    for (const Coordinate& c : coordinates_of(geometry)) {
+      line.push_back(c.lonlat);
+    }
+    for (Polygon& part : corridor_of(line, reach)) {
+      Zone zone;
+      zone.name = placemark.name;
+      zone.restriction = Restriction::unspecified;
+      zone.volumes.push_back({std::move(part), {}, {}});
+      mission_.zones.push_back(std::move(zone));
+    }
+    return true;
   }
 
   static Ring ring_of(const pugi::xml_node& boundary, std::vector<double>& heights) {

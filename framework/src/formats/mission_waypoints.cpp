@@ -210,7 +210,8 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
   const auto add = [&](const Row& row) {
     if (row.whole(0, 1'000'000) != int(number)) {
       throw Error("expected item " + std::to_string(number) + ", found " +
-                  std::to_string(row.whole(0, 1'000'000)));
+                  std::to_string(row.whole(0, 1'000'000)) +
+                  (number == 0 ? ": the file has no home position, which is item 0" : ""));
     }
     if (FenceReader::is_fence(row.command())) {
       fence.add(row, line);

@@ -61,8 +61,12 @@ std::vector<fs::path> files_of(const Params& params) {
   return files;
 }
 
-/// Larger files are read from the disk, so that a part of one costs no more than that part.
+/// Larger files are read from the disk, so that a part of one costs no more than that part; but not
+/// grids of text, of which GDAL reads all that comes before that part.
 bool is_small(const std::vector<fs::path>& files) {
+  if (files.front().extension() == ".asc") {
+    return true;
+  }
   constexpr std::uintmax_t kMax = 16'000'000;
   std::uintmax_t bytes = 0;
   for (const fs::path& file : files) {

@@ -19,11 +19,25 @@ std::string new_prefix() {
   std::snprintf(number, sizeof number, "%08u", made++ % 100'000'000);
   return std::string(kFolder) + number;
 }
+
+/// GDAL loses the first number of an ESRI ASCII grid where it is nan and begins its line
+/// (OSGeo/gdal#9666): it gets a blank before it.
+void indent_first_nan(std::string& grid) {
+  for (const char* nan : {"\nnan", "\nNaN", "\nNAN"}) {
+    if (const std::size_t at = grid.find(nan); at != std::string::npos) {
+      grid.insert(at + 1, " ");
+      return;
+    }
+  }
+}
 }  // namespace
 
 MemoryFiles::MemoryFiles(const std::vector<std::filesystem::path>& files) : prefix_(new_prefix()) {
   for (const std::filesystem::path& file : files) {
     contents_.push_back(altiplan::formats::read_file(file.string()));
+    if (file.extension() == ".asc") {
+      indent_first_nan(contents_.back());
+    }
   }
   for (std::size_t n = 0; n < files.size(); ++n) {  // now that their addresses are final
     names_.push_back(name_of(files[n]));

@@ -124,6 +124,15 @@ TEST_F(MadeFiles, WhatIsNoNumberIsAVoidAmongWholeNumbersToo) {
   EXPECT_SAYS(refusal(file), "1 of 20 posts");
 }
 
+TEST_F(MadeFiles, AGridMayBeginWithAVoid) {
+  for (const std::string nan : {"nan", "NaN", " nan"}) {
+    const auto file = grid(nan + " 1 2 3 4\n" + nan + " 6 7 8 9\n10 11 12 13 14\n15 16 17 18 19\n");
+    EXPECT_SAYS(refusal(file), "2 of 20 posts");
+    const Made filled = make_environment("terrain", file_yaml(file, "voids: fill_m, fill_m: 99"));
+    EXPECT_SAYS(filled->info().notes[0], "1 to 99 m");
+  }
+}
+
 TEST_F(MadeFiles, HeightsAreAboveSeaLevel) {
   const auto of = [&](const std::string& vertical) {
     const auto file = grid(kFlat);

@@ -88,7 +88,15 @@ void expect_limits_read(const std::string& file, const GeoJson& json, const File
 }
 
 FileZones read_features(const std::string& file, const FileRules& rules) {
-  const GeoJson json = formats::read_geojson(file);
+  GeoJson json = formats::read_geojson(file);
+  const std::size_t polygons = json.features.size();
+  std::vector<std::string> surrounded;
+  for (GeoFeature& feature : json.surroundings) {
+    if (surrounded.empty() || surrounded.back() != feature.id) {
+      surrounded.push_back(feature.id);
+    }
+    json.features.push_back(std::move(feature));
+  }
   if (!json.features.empty()) {
     formats::expect_properties(file, json,
                                {rules.floor, rules.ceiling, rules.from, rules.until, rules.type});
@@ -114,7 +122,11 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
       throw Error(file + ": '" + feature.id + "': " + error.what());
     }
   }
-  result.notes.push_back(std::to_string(json.features.size()) + " polygons read" +
+  if (!surrounded.empty()) {
+    result.notes.push_back("closed as far as a property says around " +
+                           formats::names_text(surrounded));
+  }
+  result.notes.push_back(std::to_string(polygons) + " polygons read" +
                          (rules.type.empty() ? "" : " (" + counted(types) + ")") + ", " +
                          json.skipped_text() +
                          (skipped > 0 ? ", " + std::to_string(skipped) + " by their type" : ""));

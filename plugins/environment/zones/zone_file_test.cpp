@@ -145,6 +145,42 @@ TEST_F(ZoneFile, APolygonWithoutAnAreaIsSkippedByName) {
   }
 }
 
+TEST_F(ZoneFile, PointsAndLinesAreZonesWhereAPropertySaysHowFarTheyReach) {
+  const auto feature_of = [](const std::string& geometry, const std::string& properties) {
+    return R"({"type": "Feature", "properties": )" + properties + R"(, "geometry": )" + geometry +
+           "}";
+  };
+  const std::string point = R"({"type": "Point", "coordinates": [25.05, 60.05, 0]})";
+  const std::string line =
+      R"({"type": "LineString", "coordinates": [[25.05, 60.05], [25.2, 60.05]]})";
+  const double degree = 111'319.5 * std::cos(radians(60.05));
+  for (const std::string five_km :
+       {R"({"title": "T", "Bufferzone": "5 km"})", R"({"name": "T", "radius": 5000})",
+        R"({"name": "T", "buffer_km": 5})", R"({"name": "T", "radius": "5,0 KM"})",
+        R"({"name": "T", "Radius_M": 5000})", R"({"name": "T", "buffer": 5})"}) {
+    for (const std::string& geometry : {point, line}) {
+      SCOPED_TRACE(five_km + geometry);
+      const auto layer = zones("f.geojson", collection({feature_of(geometry, five_km)}));
+      EXPECT_LT(layer->clearance(at(25.05 - 4980 / degree, 60.05, 10)), 0);
+      EXPECT_GT(layer->clearance(at(25.05 - 5030 / degree, 60.05, 10)), 0);
+      EXPECT_EQ(layer->clearance(at(25.18, 60.05, 10)) < 0, geometry == line);
+      EXPECT_TRUE(says(*layer, "closed as far as a property says around 'T'"));
+    }
+  }
+  EXPECT_NE(refusal("f.geojson", collection({feature_of(point, R"({"buffer": "some"})")}))
+                .find("expected a length such as 5 km in the property 'buffer', found 'some'"),
+            std::string::npos);
+  const std::string whole = feature("whole", 25.0, "{}");
+  EXPECT_TRUE(
+      says(*zones("f.geojson", collection({feature_of(point, R"({"name": "mast"})"), whole})),
+           "1 features without an area skipped ('mast at 25.05, 60.05')"));
+  const std::string kml =
+      "<kml><Placemark><name>T</name><ExtendedData><Data name=\"Bufferzone\"><value>5 km</value>"
+      "</Data></ExtendedData><Point><coordinates>25.05,60.05</coordinates></Point></Placemark></"
+      "kml>";
+  EXPECT_LT(zones("p.kml", kml)->clearance(at(25.05 - 4980 / degree, 60.05, 10)), 0);
+}
+
 TEST_F(ZoneFile, CoordinatesAreLongitudeAndLatitude) {
   const auto with = [](const std::string& crs) {
     return R"({"crs": {"type": "name", "properties": {"name": ")" + crs + R"("}}, )" +

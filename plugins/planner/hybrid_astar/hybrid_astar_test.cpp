@@ -78,6 +78,20 @@ TEST(HybridAstar, NamesWhatShutsAnEndIn) {
   }
 }
 
+TEST(HybridAstar, DoesNotClimbForNothingWhereNothingLimitsClimbs) {
+  // A wall with a gap: around its corners it is 3,386 m.
+  const World wall =
+      testing::world_of({Prism{{{2000, -5000}, {2040, -5000}, {2040, -50}, {2000, -50}}},
+                         Prism{{{2000, 50}, {2040, 50}, {2040, 5000}, {2000, 5000}}}});
+  Request request = testing::request_in(wall, {400, 600, 150}, {3600, 600, 150},
+                                        {{0, -1000, 0}, {4000, 1000, 400}});
+  request.limits.min_turn_radius = 60;
+  const PlanResult result = make_planner("hybrid_astar")->plan(request);
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
+  EXPECT_TRUE(check(result.route, request).ok());
+  EXPECT_LT(length(result.route), 1.2 * 3386);
+}
+
 TEST(HybridAstar, EqualRequestsGiveEqualRoutes) {
   RandomStream random(9);
   Request request =

@@ -69,7 +69,7 @@ class Search {
   /// A continuous pose, reached by one piece from its parent.
   struct Node {
     Pose pose;
-    double g = 0;  ///< metres through the air from the start
+    double g = 0;  ///< metres through the air from the start, along slopes
     Index parent = kNone;
     bool is_superseded = false;  ///< a shorter path to its cell has been found since
     double turn = 0;             ///< of the piece, radians
@@ -176,7 +176,7 @@ class Search {
     next.parent = at;
     const Leg leg = leg_of(node, next);
     next.pose = steering_.pose_on(leg, 1, node.pose.heading + turn);
-    next.g = node.g + length_;
+    next.g = node.g + length_ * std::hypot(1, gradient);
     const Index known = closed_.find(key(next.pose));
     if ((known != kNone && next.g >= nodes_[known].g) || !request_.volume.contains(leg.to)) {
       return;
@@ -225,7 +225,10 @@ class Search {
     for (const auto& [promised, k] : shots_) {
       const auto path = steering_.path(node.pose, goals_[k]);
       if (path && is_free(at, path->legs)) {
-        best_ = node.g + path->length;
+        best_ = node.g;
+        for (const Leg& leg : path->legs) {
+          best_ += std::hypot(leg.air_length(), leg.to.z() - leg.from.z());
+        }
         request_.budget.show_best(best_);
         best_node_ = at;
         best_legs_ = path->legs;

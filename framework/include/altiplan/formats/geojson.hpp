@@ -24,16 +24,22 @@ struct ALTIPLAN_API GeoFeature {
 
 struct ALTIPLAN_API GeoJson {
   std::vector<GeoFeature> features;
-  std::size_t skipped = 0;        ///< features without an area: points, lines, no geometry
-  std::vector<std::string> flat;  ///< names of polygons that are degenerate, wholly or in part
-  std::string copyright;          ///< copyright notice of the file, "" where there is none
+  /// What lies within the distance of a point or a line that a property gives, such as
+  /// "Bufferzone": "5 km"; several polygons for each.
+  std::vector<GeoFeature> surroundings;
+  std::size_t skipped = 0;  ///< features without an area: points, lines, no geometry
+  /// Names of what has no area, wholly or in part, and where its points and lines begin.
+  std::vector<std::string> flat;
+  std::string copyright;  ///< copyright notice of the file, "" where there is none
 
   /// "3 features without an area skipped ('pier')"
   std::string skipped_text() const;
 };
 
 /// Reads GeoJSON (RFC 7946). Throws Error, naming the feature, for damaged text, rings that are
-/// open or intersect themselves, and coordinates out of range.
+/// open or intersect themselves, coordinates out of range, and a radius or buffer that is no
+/// length. A number without a unit is in metres from 100 on, below in kilometres, which closes
+/// more.
 ALTIPLAN_API GeoJson read_geojson(const std::string& file);
 
 /// The property `role` of zones that we wrote, keep_in or keep_out; unspecified for others.
