@@ -143,9 +143,9 @@ bool read_surroundings(const Json& feature, const std::string& id, const std::st
   if (reach == 0) {
     const auto first =
         std::find_if(lines.begin(), lines.end(), [](const Ring& r) { return !r.empty(); });
-    to.flat.push_back(first == lines.end() ? id
-                                           : id + " at " + short_text((*first)[0][0]) + ", " +
-                                                 short_text((*first)[0][1]));
+    to.places.push_back(first == lines.end() ? id
+                                             : id + " at " + short_text((*first)[0][0]) + ", " +
+                                                   short_text((*first)[0][1]));
   }
   return reach > 0;
 }

@@ -122,14 +122,18 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
       throw Error(file + ": '" + feature.id + "': " + error.what());
     }
   }
-  if (!surrounded.empty()) {
-    result.notes.push_back("closed as far as a property says around " +
-                           formats::names_text(surrounded));
-  }
   result.notes.push_back(std::to_string(polygons) + " polygons read" +
                          (rules.type.empty() ? "" : " (" + counted(types) + ")") + ", " +
                          json.skipped_text() +
                          (skipped > 0 ? ", " + std::to_string(skipped) + " by their type" : ""));
+  if (!surrounded.empty()) {
+    result.notes.push_back("closed as far as a property says around " +
+                           formats::names_text(surrounded));
+  }
+  if (!json.places.empty()) {
+    result.notes.push_back("points and lines without a width, skipped: " +
+                           formats::names_text(json.places));
+  }
   return result;
 }
 

@@ -173,7 +173,7 @@ TEST_F(ZoneFile, PointsAndLinesAreZonesWhereAPropertySaysHowFarTheyReach) {
   const std::string whole = feature("whole", 25.0, "{}");
   EXPECT_TRUE(
       says(*zones("f.geojson", collection({feature_of(point, R"({"name": "mast"})"), whole})),
-           "1 features without an area skipped ('mast at 25.05, 60.05')"));
+           "points and lines without a width, skipped: 'mast at 25.05, 60.05'"));
   const std::string kml =
       "<kml><Placemark><name>T</name><ExtendedData><Data name=\"Bufferzone\"><value>5 km</value>"
       "</Data></ExtendedData><Point><coordinates>25.05,60.05</coordinates></Point></Placemark></"

@@ -28,8 +28,8 @@ struct ALTIPLAN_API GeoJson {
   /// "Bufferzone": "5 km"; several polygons for each.
   std::vector<GeoFeature> surroundings;
   std::size_t skipped = 0;  ///< features without an area: points, lines, no geometry
-  /// Names of what has no area, wholly or in part, and where its points and lines begin.
-  std::vector<std::string> flat;
+  std::vector<std::string> places;  ///< of these the points and lines: "mast at 25.05, 60.05"
+  std::vector<std::string> flat;    ///< names of polygons that are degenerate, wholly or in part
   std::string copyright;  ///< copyright notice of the file, "" where there is none
 
   /// "3 features without an area skipped ('pier')"
