@@ -287,6 +287,29 @@ TEST(Export, ThinningKeepsEndsAndViaPoints) {
   EXPECT_EQ(thinned(kAround, 9, scene.mission.request, {}).size(), kAround.size());
 }
 
+TEST(Export, SaysHowFarAutopilotsFlyBesideLongLegs) {
+  // 60 km along 36.5° N in a frame of longitude and latitude: L² tan(lat) / 8R = 52.3 m.
+  const auto notes_of = [](double length, Format format) {
+    const Polyline route{{50, 50, 300}, {50 + length, 50, 300}};
+    Scene scene(route, true, nullptr);
+    scene.mission.request.volume.max.x() = scene.mission.track_request.volume.max.x() = 1e5;
+    const Exported exported =
+        export_route(scene.mission, ExportSource{"x", route, {}, {}}, options_of(format));
+    std::string all;
+    for (const std::string& message : exported.messages) {
+      all += message + '\n';
+    }
+    return all;
+  };
+  EXPECT_NE(notes_of(60'000, Format::qgc_plan)
+                .find("PX4 flies up to 52.3 m beside the line that was "
+                      "judged, ArduPilot 0.0 m"),
+            std::string::npos)
+      << notes_of(60'000, Format::qgc_plan);
+  EXPECT_EQ(notes_of(60'000, Format::kml).find("beside the line"), std::string::npos);
+  EXPECT_EQ(notes_of(5'000, Format::qgc_plan).find("beside the line"), std::string::npos);
+}
+
 TEST(Export, AFlightIsJudgedAsATrackWithItsTimes) {
   Scene scene;
   scene.mission.track_request.vehicle.speed_mps = 20;

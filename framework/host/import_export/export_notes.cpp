@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/import_export/export_notes.hpp"
 
-#include "altiplan/body.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "altiplan/body.hpp"
+#include "altiplan/earth.hpp"
 
 #include "host/base/words.hpp"
 
@@ -33,6 +34,37 @@ void note_autopilots(const WrittenRoute& written, std::vector<std::string>& note
   }
 }
 
+/// How far autopilots fly beside the legs, which are straight in the frame: PX4 flies the geodesic,
+/// ArduPilot even steps of longitude and latitude. Both are farthest from a leg at its middle.
+void note_long_legs(const WrittenRoute& written, const Frame& frame,
+                    std::vector<std::string>& notes) {
+  constexpr double kWorthSaying = 1;  // metre
+  double by_px4 = 0;
+  double by_ardupilot = 0;
+  for (std::size_t n = 0; n + 1 < written.places.size(); ++n) {
+    const Vec3& from = written.places[n].at;
+    const Vec3& to = written.places[n + 1].at;
+    const auto from_middle = [&](double lon, double lat) {
+      const auto [x, y] = frame.to_local(lon, lat);
+      return std::hypot(x - (from.x() + to.x()) / 2, y - (from.y() + to.y()) / 2);
+    };
+    const LonLat begin = frame.to_lonlat(from.x(), from.y());
+    const LonLat end = frame.to_lonlat(to.x(), to.y());
+    const GeodesicCourse course = geodesic_course(begin, end);
+    const auto [lon, lat] = geodesic_end(begin, course.bearing_deg, course.metres / 2);
+    by_px4 = std::max(by_px4, from_middle(lon, lat));
+    by_ardupilot =
+        std::max(by_ardupilot, from_middle(begin[0] + std::remainder(end[0] - begin[0], 360.0) / 2,
+                                           (begin[1] + end[1]) / 2));
+  }
+  if (std::max(by_px4, by_ardupilot) > kWorthSaying) {
+    notes.push_back("warning: of long legs PX4 flies up to " + with_decimals(by_px4, 1) +
+                    " m beside the line that was judged, ArduPilot " +
+                    with_decimals(by_ardupilot, 1) +
+                    " m: `altiplan check` of the file judges what is flown");
+  }
+}
+
 /// Height of the lowest part of the body above its reference point.
 double lowest_of(const Vehicle& vehicle) {
   double lowest = 0;
@@ -48,7 +80,7 @@ double lowest_of(const Vehicle& vehicle) {
 }  // namespace
 
 std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptions& options,
-                                  double tolerance, bool beside_turns, const Vehicle& vehicle) {
+                                  double tolerance, bool beside_turns, const Mission& mission) {
   std::vector<std::string> notes;
   if (written.turns > 0) {
     notes.push_back(
@@ -62,13 +94,16 @@ std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptio
         "turn radius, climb and headings are judged along the turns: the legs between the points "
         "have corners");
   }
-  const double lowest_m = lowest_of(vehicle);
+  const double lowest_m = lowest_of(mission.request.vehicle);
   if (lowest_m < 0 && (options.takeoff || options.land)) {
     notes.push_back("warning: parts of the body are up to " + rounded_text(-lowest_m, 2) +
                     " m below the point that follows the route, which take-off and landing put on "
                     "the ground");
   }
   note_autopilots(written, notes);
+  if (options.has_commands() && mission.truth.frame().has_position()) {
+    note_long_legs(written, mission.truth.frame(), notes);
+  }
   return notes;
 }
 }  // namespace altiplan::host
