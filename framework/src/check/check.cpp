@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "altiplan/attributed.hpp"
 #include "leg_judge.hpp"
 #include "words.hpp"
 
@@ -44,13 +43,6 @@ std::vector<Violation> leg_violations(const std::optional<Approach>& before, con
 }
 
 namespace {
-/// Result of a constraint's function; exceptions are attributed to the constraint.
-template <class Ask>
-auto answer_of(const NamedConstraint& named, const Ask& ask) {
-  return attributed([&] { return "the constraint '" + named.name + "'"; },
-                    [&] { return ask(*named.constraint); });
-}
-
 /// The chords of a route as constraints see them, and the leg of each point; the last point is the
 /// last waypoint.
 Polyline chords_of(const Route& route, std::vector<std::size_t>& leg_of) {
@@ -152,16 +144,11 @@ CheckResult check(const Route& route, const Request& request) {
   std::vector<std::size_t> leg_of;
   const Polyline points = route.is_straight() ? route.waypoints() : chords_of(route, leg_of);
   for (const NamedConstraint& named : request.constraints) {
-    for (Violation& violation : answer_of(
-             named, [&](const Constraint& asked) { return asked.violations(points, request); })) {
-      if (violation.at >= points.size()) {
-        throw PluginError("the constraint '" + named.name +
-                          "' violated the contract of its interface: it names waypoint " +
-                          std::to_string(violation.at) + " of " + std::to_string(points.size()));
-      }
+    for (Violation& violation : violations_of(named, points, request)) {
       violation.at = leg_of.empty() ? violation.at : leg_of[violation.at];
-      violation.constraint = named.name;
-      found.push_back(std::move(violation));
+      if (std::find(found.begin(), found.end(), violation) == found.end()) {  // of a leg
+        found.push_back(std::move(violation));
+      }
     }
   }
   return result;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/request.hpp"
 #include "altiplan/swept_volume.hpp"
@@ -13,6 +14,30 @@
 #include "words.hpp"
 
 namespace altiplan {
+
+/// Result of a constraint's function; exceptions are attributed to the constraint.
+template <class Ask>
+auto answer_of(const NamedConstraint& named, const Ask& ask) {
+  return attributed([&] { return "the constraint '" + named.name + "'"; },
+                    [&] { return ask(*named.constraint); });
+}
+
+/// The violations of a route, under the constraint's name. Throws PluginError where one is of no
+/// waypoint.
+inline std::vector<Violation> violations_of(const NamedConstraint& named, const Polyline& route,
+                                            const Request& request) {
+  std::vector<Violation> all =
+      answer_of(named, [&](const Constraint& asked) { return asked.violations(route, request); });
+  for (Violation& violation : all) {
+    if (violation.at >= route.size()) {
+      throw PluginError("the constraint '" + named.name +
+                        "' violated the contract of its interface: it names waypoint " +
+                        std::to_string(violation.at) + " of " + std::to_string(route.size()));
+    }
+    violation.constraint = named.name;
+  }
+  return all;
+}
 
 /// Checks one leg against every constraint, the cheap ones first: one call of `report` (with a
 /// function that makes the violation) per violated constraint, until report returns false.
@@ -375,13 +400,22 @@ class LegJudge {
   bool admitted(const Motion& motion) const {
     return std::all_of(request_.constraints.begin(), request_.constraints.end(),
                        [&](const NamedConstraint& named) {
-                         return named.admits_all || named.admits(motion) || report_([&] {
-                                  return Violation{named.name, at_, 0, 0,
-                                                   "the constraint does not admit the leg from " +
-                                                       place(motion.from) + " to " +
-                                                       place(motion.to)};
-                                });
+                         return named.admits_all || named.admits(motion) ||
+                                report_([&] { return refusal(named, motion); });
                        });
+  }
+
+  /// What the constraint says of the leg as a route, if it says more than that it refuses it.
+  Violation refusal(const NamedConstraint& named, const Motion& motion) const {
+    const std::vector<Violation> said = violations_of(named, {motion.from, motion.to}, request_);
+    if (said.empty()) {
+      return {named.name, at_, 0, 0,
+              "the constraint does not admit the leg from " + place(motion.from) + " to " +
+                  place(motion.to)};
+    }
+    Violation violation = said.front();
+    violation.at = at_;
+    return violation;
   }
 
   bool keeps_off() const {

@@ -115,6 +115,7 @@ TEST(GroundDistance, TheJudgeNamesTheDistance) {
   EXPECT_TRUE(check(route, problem("{max_m: 99}")).ok());
   const CheckResult result = check(route, problem("{max_m: 90}"));
   ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.violations.size(), 2U);  // of each leg, not again of the route
   const Violation& last = result.violations.back();
   EXPECT_EQ(last.constraint, "ground_distance");
   EXPECT_GT(last.value, 90);
