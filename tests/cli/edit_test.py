@@ -78,6 +78,27 @@ class Edit(EditCase):
             self.assertAlmostEqual(after["answers"][0]["goal"]["at"][axis],
                                    before["goal"]["at"][axis] + by, delta=0.02)
 
+    def test_moves_across_the_180th_meridian_and_a_pole(self):
+        for origin, goal, by, moved in (([179.99, -16.8], [179.98, -16.8], [3000, 0, 0], [-179.9919, -16.8]),
+                                        ([0, 89.99], [0, 89.99], [0, 2000, 0], [180, 89.9921]),
+                                        ([0, -89.99], [0, -89.99], [0, -2000, 0], [180, -89.9921])):
+            self.scenario.write_text(
+                "altiplan: 1\n"
+                f"frame: {{crs: local, origin_lonlat: {origin}}}\n"
+                "start: {at_m: [500, 0, 100]}\n"
+                f"goal: {{at_lonlat: [{goal[0]}, {goal[1]}, 100], tolerance_m: 5}}\n"
+                "volume: {min_m: [-9000, -9000, 0], max_m: [9000, 9000, 500]}\n")
+            self.pipeline.write_text("altiplan: 1\nscenario: scenario.yaml\nsteps:\n  - plan: astar\n"
+                                     "    with: {cell_m: [200, 200, 100]}\n")
+            session = self.begin()
+            [setting] = session.edit(move={"key": "goal", "by": by})["pipelines"][0]["set"]
+            lonlat = json.loads(setting.split("=")[1])
+            off = (lonlat[0] - moved[0] + 180) % 360 - 180
+            self.assertLess(abs(off), 2e-4 if abs(origin[1]) < 80 else 0.02, setting)
+            self.assertAlmostEqual(lonlat[1], moved[1], 3)
+            answer = session.edit()["answers"][0]
+            self.assertEqual(answer["results"][0]["status"], "solved")
+
     def test_a_drag_is_one_change(self):
         session = self.begin()
         session.edit()
