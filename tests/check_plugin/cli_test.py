@@ -184,6 +184,18 @@ class CheckPlugin(unittest.TestCase):
         self.assertIn("did not end within 2 s", done.stdout)
         self.assertLess(time.monotonic() - began, 20)
 
+    def test_the_first_hang_ends_the_run(self):
+        began = time.monotonic()
+        done = self.run_it(PLANNERS, "--rounds", "1", "--time-limit", "2", "--jobs", "1", "--json",
+                           "--untimed", "--only", "^planner/never_returns/", code=4)
+        tests = json.loads(done.stdout)["tests"]
+        [hung] = [test for test in tests if test["status"] == "failed"]
+        left = [test for test in tests if test["skipped"] and "not run after" in test["skipped"]]
+        self.assertGreater(len(left), 5)
+        self.assertEqual({test["skipped"] for test in left},
+                         {"not run after %s, which did not end" % hung["name"]})
+        self.assertLess(time.monotonic() - began, 20)
+
     def test_memory_limit(self):
         done = self.run_it(PLANNERS, "--rounds", "1", "--memory-limit", "200", "--only",
                            "hoards/possible", code=4)

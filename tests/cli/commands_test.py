@@ -253,6 +253,12 @@ class Cli(CliCase):
                     self.assertEqual(self.read("result.json"), "before")
                     self.assertEqual(sorted(os.listdir(self.folder)), files)
 
+    def test_a_mission_in_place_of_a_pipeline_is_told_what_takes_it(self):
+        self.write("m.plan", '{"fileType": "Plan", "mission": {"items": [{"params": [null]}]}}')
+        for command in (["run"], ["validate"], ["explain"], ["edit", "--no-browser"]):
+            _, error = self.call(*command, self.path("m.plan"), code=3)
+            self.assertIn("m.plan: is a mission, expected a YAML file: `altiplan check` judges", error)
+
     def test_explain(self):
         out, _ = self.call("explain", self.pipeline, "--json", "--set", "steps.0.with.weight_h=0.2")
         explained = json.loads(out)

@@ -70,6 +70,13 @@ class Runner {
     }
     std::vector<std::unique_ptr<TestProcess>> children;
     while ((!waiting.empty() || !children.empty()) && !options_.stop.stop_requested()) {
+      for (; !hung_.empty() && !waiting.empty(); waiting.pop_back()) {
+        Verdict skipped;
+        skipped.test = tests_[waiting.back()].name;
+        skipped.skipped = "not run after " + hung_ + ", which did not end";
+        done_(skipped);
+        verdicts_[waiting.back()] = std::move(skipped);
+      }
       while (!waiting.empty() && children.size() < jobs) {
         try {
           start(children, waiting.back(), false);
@@ -113,6 +120,7 @@ class Runner {
         verdict.seen_from_outside = true;
       }
     }
+    hung_ = verdict.hung && hung_.empty() ? verdict.test : hung_;
     done_(verdict);
     verdicts_[index] = std::move(verdict);
   }
@@ -123,6 +131,7 @@ class Runner {
   std::vector<std::optional<Verdict>> verdicts_;
   std::vector<std::string> first_answers_;
   std::uint64_t started_ = 0;
+  std::string hung_;  ///< the first test that did not end
 };
 }  // namespace
 

@@ -15,6 +15,7 @@ struct Verdict {
   std::vector<conformance::Finding> findings;  ///< none: passed
   bool seen_from_outside = false;  ///< a finding by the parent about the process that ran the test
   std::string skipped;
+  bool hung = false;    ///< it was killed after the time limit
   bool misfit = false;  ///< skipped because the parameters do not fit the plugin
   std::string output;   ///< the end of its output on stdout and stderr
   double time_s = 0;
@@ -35,7 +36,8 @@ struct RunnerOptions {
 
 /// Runs each test in its own process and scratch folder; those that measure time one after the
 /// other, at the end. Calls `done` with each verdict as it arrives. Returns them in the order of
-/// the tests; fewer if stopped. Throws Error if no process can be started.
+/// the tests; fewer if stopped. After one that does not end, those that have not begun are skipped:
+/// a plugin that hangs does so in most. Throws Error if no process can be started.
 std::vector<Verdict> run_apart(const std::vector<PluginTest>& tests, const RunnerOptions& options,
                                const std::function<void(const Verdict&)>& done);
 

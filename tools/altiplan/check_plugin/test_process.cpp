@@ -150,6 +150,7 @@ std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
   Verdict verdict;
   verdict.findings = {{kEnds, "it " + over}};
   verdict.seen_from_outside = true;
+  verdict.hung = time_s > options.time_limit_s;
   verdict.output = end_of(scratch_.path() / "said", 2000);
   verdict.time_s = time_s;
   verdict.peak_memory_mb = peak_mb_;
