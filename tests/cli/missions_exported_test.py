@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """missions_exported_test.py PROGRAM SOURCES: `altiplan export` and `upload` of a mission."""
+import csv
 import json
 import subprocess
 import sys
@@ -64,6 +65,29 @@ class Missions(PlanCase):
             out, err = self.altiplan(*call, "--terrain", TERRAIN, "--min-agl", "50", code=1)
             self.assertIn("fail", out + err)
         self.assertFalse((self.folder / "other.plan").exists())
+
+    def test_one_time(self):
+        """The mission's time is the gate's, in whatever form it is asked for."""
+        self.plan["mission"]["items"][0]["command"] = 22
+        (self.folder / "mission.plan").write_text(json.dumps(self.plan))
+        out, _ = self.altiplan("check", "mission.plan", "--terrain", TERRAIN, "--json")
+        answer = json.loads(out)
+        words = "{:.1f} to {:.1f} min".format(*(seconds / 60 for seconds in answer["time_s"]))
+        self.assertIsNone(answer["metrics"]["duration_s"])  # along drawn lines
+        out, _ = self.altiplan("check", "mission.plan", "--terrain", TERRAIN, "--certificate", "c.html")
+        self.assertIn(words, out)
+        self.assertIn(words, (self.folder / "c.html").read_text())
+        self.assertIn(words, self.altiplan("info", "mission.plan", "--terrain", TERRAIN)[0])
+        self.assertIn("as if over level ground", self.altiplan("info", "mission.plan")[0])
+        self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "-o", "m.csv")
+        rows = list(csv.DictReader((self.folder / "m.csv").read_text().splitlines()))
+        self.assertEqual(len(rows), len(POINTS))
+        for row, earlier in zip(rows[1:], rows):
+            self.assertLess(float(earlier["time_s"]), float(row["time_s"]))
+        self.assertAlmostEqual(float(rows[-1]["time_s"]), answer["time_s"][0], 2)
+        self.assertAlmostEqual(float(rows[-1]["latest_s"]), answer["time_s"][1], 2)
+        self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "-o", "m.geojson")
+        self.assertNotIn("times_s", (self.folder / "m.geojson").read_text())
 
     def test_options(self):
         _, err = self.altiplan("export", "mission.plan", "-o", "other.plan", code=2)

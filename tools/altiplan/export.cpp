@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/import_export/plan.hpp"
+#include "host/import_export/route_csv.hpp"
 #include "mission_options.hpp"
 #include "route_export.hpp"
 
@@ -61,6 +62,17 @@ bool write_fence(const LoadedRoute& route, const std::string& file) {
   return fence.text.has_value();
 }
 
+/// The drawn points with the gate's times.
+std::string csv_of(const JudgedPlan& judged) {
+  const host::ImportedRoute& drawn = judged.report.imported;
+  std::vector<host::CsvRow> rows;
+  for (std::size_t n = 0; n < drawn.items.size(); ++n) {
+    const host::TimeSpan& time = judged.report.times[n];
+    rows.push_back({time.min_s, time.max_s, drawn.route[n], drawn.items[n].at});
+  }
+  return host::route_csv_text(rows, judged.world.truth.frame().has_position(), {});
+}
+
 /// Its own commands, where the format has some; else its positions. None, which is reported: the
 /// mission does not pass.
 std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
@@ -82,13 +94,18 @@ std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
     }
     return format == Format::qgc_plan ? host::plan_text(plan) : host::waypoints_text(plan);
   }
+  if (!format) {
+    return csv_of(judged);
+  }
   host::ExportSource source;
   source.name = std::filesystem::path(file).stem().string();
   source.route = judged.report.imported.route;
   judged.world.request.start.position = source.route.front();
   judged.world.request.goal = {source.route.back()};
   judged.world.request.goal.tolerance_m = 1;
-  const host::Exported written = host::export_route(judged.world, source, arguments.route.options);
+  host::ExportOptions options = arguments.route.options;
+  options.has_times = false;
+  const host::Exported written = host::export_route(judged.world, source, options);
   for (const std::string& message : written.messages) {
     std::cerr << "altiplan: " << message << '\n';
   }

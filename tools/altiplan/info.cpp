@@ -7,14 +7,16 @@
 #include "host/base/utf8.hpp"
 #include "host/first_route/file_info.hpp"
 #include "host/gate/plan_report.hpp"
+#include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
+#include "plan_world.hpp"
 
 namespace altiplan::cli {
 namespace {
 
 struct InfoArguments {
   std::vector<std::string> files;
-  std::string crs;
+  PlanCheck mission;  ///< the terrain over which missions are flown
   bool json = false;
   host::Overrides overrides;
 };
@@ -22,10 +24,17 @@ struct InfoArguments {
 /// What the file holds and, of a mission, how it is flown.
 host::FileInfo facts_of(const std::string& file, const InfoArguments& arguments,
                         host::Registry& registry) {
-  host::FileInfo info = host::info_of(file, arguments.crs, registry);
+  host::FileInfo info = host::info_of(file, arguments.mission.crs, registry);
   if (info.kind == "mission") {
+    const formats::MissionFile mission = formats::read_mission(file, formats::read_file(file));
+    std::optional<host::Mission> world;
+    if (!arguments.mission.terrain.empty() && !mission.items.empty()) {
+      PlanCheck plan = arguments.mission;
+      plan.plan = file;
+      world = host::build_mission(world_of(plan, mission, arguments.overrides), 1);
+    }
     const std::vector<std::string> flown =
-        host::flight_facts(formats::read_mission(file, formats::read_file(file)), {});
+        host::flight_facts(mission, world ? &*world : nullptr, {});
     info.facts.insert(info.facts.end(), flown.begin(), flown.end());
   }
   return info;
@@ -77,7 +86,12 @@ void add_info(App& app, Action& action) {
   auto [command, arguments] = add_command<InfoArguments>(
       app, action, "info", "what a file holds: elevation model, zones, map, mission", info_of);
   command.add_option("files", arguments.files, "files")->required();
-  command.add_option("--crs EPSG:CODE", arguments.crs,
+  command
+      .add_option("--terrain FILE", arguments.mission.terrain,
+                  "elevation model over which missions are flown, or a folder of tiles; repeatable")
+      ->take_all()
+      ->one_at_a_time();
+  command.add_option("--crs EPSG:CODE", arguments.mission.crs,
                      "coordinate system of a model that names none");
   command.add_flag("--json", arguments.json, "print as JSON");
   add_plugin_path(command, arguments.overrides);

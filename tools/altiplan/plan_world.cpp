@@ -74,7 +74,7 @@ std::vector<LonLat> positions_of(const formats::MissionFile& mission) {
 double horizon_s(const PlanCheck& plan, const formats::MissionFile& mission) {
   return std::min(plan.flown_s
                       ? *plan.flown_s
-                      : kMargin * time_of(host::estimated_flights(mission, plan.gate)).max_s,
+                      : kMargin * time_of(host::flights_of(mission, nullptr, plan.gate)).max_s,
                   kLongest);
 }
 

@@ -44,17 +44,18 @@ double drawn_length(const formats::MissionFile& plan) {
 }
 }  // namespace
 
-std::vector<std::string> flight_facts(const formats::MissionFile& plan,
+std::vector<std::string> flight_facts(const formats::MissionFile& plan, const Mission* world,
                                       const GateOptions& options) {
   if (plan.items.empty() || plan.commands.empty()) {
     return {};
   }
   std::vector<std::string> facts{"length " + with_decimals(drawn_length(plan) / 1000, 3) + " km"};
   try {
-    for (const FlownMission& flown : estimated_flights(plan, options)) {
+    for (const FlownMission& flown : flights_of(plan, world, options)) {
       const std::string who = flown.autopilot.name() + ": ";
       if (!flown.parts.empty()) {
-        facts.push_back("flown by " + who + time_in_words(flown.time) + heights_of(flown, plan));
+        facts.push_back("flown by " + who + time_in_words(flown.time) + heights_of(flown, plan) +
+                        (world == nullptr ? ", as if over level ground (--terrain DEM)" : ""));
       }
       for (const Remark& remark : flown.remarks) {
         if (remark.weight != Remark::Weight::note) {

@@ -109,6 +109,7 @@ class Gate {
                                flown.parameters.end());
     }
     report.time = time_of(all);
+    add_times(report, all);
     add_cures(report);
     note_autopilots(report);
     note_fence(report);
@@ -181,6 +182,24 @@ class Gate {
       if (is_first) {
         report.parts.push_back(std::move(reported));
       }
+    }
+  }
+
+  /// Of each drawn point: from the earliest to the latest of the flights, when its command is done
+  /// for the first time.
+  void add_times(PlanReport& report, const std::vector<FlownMission>& all) const {
+    for (const MissionItem& item : report.imported.items) {
+      TimeSpan left{kInfinity, 0};
+      for (const FlownMission& flown : all) {
+        const auto is_of = [&](const FlownPart& part) {
+          return plan_.commands[part.command].place == item.place;
+        };
+        const auto first = std::find_if(flown.parts.begin(), flown.parts.end(), is_of);
+        const auto next = std::find_if_not(first, flown.parts.end(), is_of);
+        const TimeSpan time = first == next ? TimeSpan{} : std::prev(next)->time;
+        left = {std::min(left.min_s, time.min_s), std::max(left.max_s, time.max_s)};
+      }
+      report.times.push_back(left);
     }
   }
 
@@ -370,12 +389,15 @@ TimeSpan time_of(const std::vector<FlownMission>& flights) {
   return time;
 }
 
-std::vector<FlownMission> estimated_flights(const formats::MissionFile& plan,
-                                            const GateOptions& options) {
+std::vector<FlownMission> flights_of(const formats::MissionFile& plan, const Mission* world,
+                                     const GateOptions& options) {
+  if (world != nullptr) {
+    return Gate(plan, *world, options).flights();
+  }
   const formats::MissionPoint& first = plan.items.front().at;
-  Mission mission;
-  mission.truth = World().with_frame(Frame::local({first.lon, first.lat}));
-  return Gate(plan, mission, options).flights();
+  Mission level;
+  level.truth = World().with_frame(Frame::local({first.lon, first.lat}));
+  return Gate(plan, level, options).flights();
 }
 
 PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
@@ -407,6 +429,7 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   add_home(report, plan, world.truth);
   report.measures = measure(route, request);
   report.measures.length_m = length_on_ground(route, world.truth.frame());
+  report.measures.duration_s.reset();  // along drawn lines: nobody flies it so
   return report;
 }
 

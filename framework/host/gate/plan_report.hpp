@@ -48,7 +48,8 @@ struct PlanReport {
   std::vector<Parameters::Used> parameters;    ///< that mattered
   std::vector<Finding> findings;               ///< none: passed
   std::vector<ReportedPart> parts;             ///< flown by the first of the autopilots
-  TimeSpan time;                               ///< by any of them
+  TimeSpan time;                               ///< by any of them: the only time of the mission
+  std::vector<TimeSpan> times;                 ///< when each point of the drawn route is left first
   double lowest_m = kInfinity;                 ///< above ground, but where it takes off and lands
   Measures measures;
   std::vector<std::string> notes;  ///< how the file and the world were read
@@ -93,14 +94,15 @@ struct GateOptions {
 /// From the fastest to the slowest of the flights.
 TimeSpan time_of(const std::vector<FlownMission>& flights);
 
-/// The flights by each autopilot that may fly it, without a world: heights above ground count from
-/// home.
-std::vector<FlownMission> estimated_flights(const formats::MissionFile& plan,
-                                            const GateOptions& options);
+/// The flights by each autopilot that may fly it. Without a world heights above ground count from
+/// home, and the vehicle takes off and lands at its height.
+std::vector<FlownMission> flights_of(const formats::MissionFile& plan, const Mission* world,
+                                     const GateOptions& options);
 
-/// What can be said of a mission without a world: its drawn length, and for each autopilot that may
-/// fly it time, heights, and what it refuses or what is not modelled; a line each.
-std::vector<std::string> flight_facts(const formats::MissionFile& plan, const GateOptions& options);
+/// What can be said of a mission without a verdict: its drawn length, and for each autopilot that
+/// may fly it time, heights, and what it refuses or what is not modelled; a line each.
+std::vector<std::string> flight_facts(const formats::MissionFile& plan, const Mission* world,
+                                      const GateOptions& options);
 
 /// Judges a mission as the autopilots that may fly it do: every part of the flight, the whole band
 /// that its parameters allow. A file without commands (KML, GPX, GeoJSON) is judged as drawn,

@@ -24,6 +24,7 @@ struct ExportOptions {
   /// Altitude of home above sea level; default: the ground below the start.
   std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
+  bool has_times = true;  ///< of a mission only a span is known, which maps cannot show
 
   /// True of a format for autopilots, with commands such as take-offs.
   bool has_commands() const;

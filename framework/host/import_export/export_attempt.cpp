@@ -198,7 +198,7 @@ struct Attempt {
     std::vector<CsvRow> rows;
     for (std::size_t n = 0; n < timing.size(); ++n) {
       const Vec3& at = written.places[n].at;
-      rows.push_back({timing[n].time_s, at, place(at)});
+      rows.push_back({timing[n].time_s, {}, at, place(at)});
     }
     return rows;
   }
@@ -234,8 +234,10 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
       break;
     }
     attempt.text.times_s.clear();
-    for (const PlaceTiming& each : attempt.timing) {
-      attempt.text.times_s.push_back(each.time_s);
+    if (options.has_times) {
+      for (const PlaceTiming& each : attempt.timing) {
+        attempt.text.times_s.push_back(each.time_s);
+      }
     }
     std::optional<std::string> now = attempt.with_decimals(mission.request, false, decimals);
     const bool as_turns = !now && written.turns > 0;

@@ -197,7 +197,9 @@ std::string geojson_text(const MissionText& text) {
   for (const double time_s : text.times_s) {
     times.push_back(rounded(time_s, 3));
   }
-  properties["times_s"] = times;
+  if (!times.empty()) {
+    properties["times_s"] = times;
+  }
   if (const std::string time = iso_time(text, 0); !time.empty()) {
     properties["start_time"] = time;
   }

@@ -103,11 +103,15 @@ Polyline read_route_csv(const std::string& file, const std::string& text) {
 std::string route_csv_text(const std::vector<CsvRow>& rows, bool has_position,
                            const Decimals& decimals) {
   constexpr int kMilliseconds = 3;
-  std::string out = std::string("time_s,x_m,y_m,z_m") +
+  const bool has_latest = !rows.empty() && rows.front().latest_s;
+  std::string out = std::string("time_s") + (has_latest ? ",latest_s" : "") + ",x_m,y_m,z_m" +
                     (has_position ? ",longitude_deg,latitude_deg" : "") +
                     ",altitude_m,altitude_frame\n";
-  for (const auto& [time_s, local, at] : rows) {
+  for (const auto& [time_s, latest_s, local, at] : rows) {
     out += rounded_text(time_s, kMilliseconds);
+    if (has_latest) {
+      out += "," + (std::isfinite(*latest_s) ? rounded_text(*latest_s, kMilliseconds) : "");
+    }
     for (const double metres : local) {
       out += "," + rounded_text(metres, decimals.metres);
     }

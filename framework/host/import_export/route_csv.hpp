@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "altiplan/route.hpp"
@@ -14,11 +15,13 @@ Polyline read_route_csv(const std::string& file, const std::string& text);
 
 struct CsvRow {
   double time_s = 0;
+  std::optional<double> latest_s;  ///< of a mission; infinite where nothing ends its wait
   Vec3 local{0, 0, 0};
   formats::MissionPoint at;  ///< its degrees count in a world with a georeference
 };
 
-/// The table of these columns and others; with degrees if `has_position`.
+/// The table of these columns and others; with degrees if `has_position`, and a column `latest_s`
+/// if the first row has such a time.
 std::string route_csv_text(const std::vector<CsvRow>& rows, bool has_position,
                            const Decimals& decimals);
 }  // namespace altiplan::host
