@@ -2,6 +2,7 @@
 """missions_exported_test.py PROGRAM SOURCES: `altiplan export` and `upload` of a mission."""
 import csv
 import json
+import re
 import subprocess
 import sys
 import unittest
@@ -88,6 +89,31 @@ class Missions(PlanCase):
         self.assertAlmostEqual(float(rows[-1]["latest_s"]), answer["time_s"][1], 2)
         self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "-o", "m.geojson")
         self.assertNotIn("times_s", (self.folder / "m.geojson").read_text())
+
+    def test_view(self):
+        """The page shows the flown line with the verdict of `check`, whose violations are on it."""
+        self.plan["mission"]["items"][0]["command"] = 22
+        (self.folder / "mission.plan").write_text(json.dumps(self.plan))
+        for code, limits in ((0, []), (1, ["--min-agl", "400"])):
+            verdict, _ = self.altiplan("check", "mission.plan", "--terrain", TERRAIN, *limits, code=code)
+            self.altiplan("view", "mission.plan", "--terrain", TERRAIN, *limits, "-o", "page.html",
+                          "--svg", "top.svg")
+            page = (self.folder / "page.html").read_text()
+            scene = json.loads(re.search(r'<script id="scene" type="application/json">(.*?)</script>',
+                                         page, re.DOTALL)[1])
+            self.assertEqual(scene["title"], verdict.splitlines()[0])
+            result, = scene["results"]
+            self.assertEqual(result["status"], "rejected" if code else "solved")
+            self.assertAlmostEqual(result["route"][1][2] - result["route"][0][2],
+                                   POINTS[0][2] + 300 - 400, 0)  # the climb from home
+            self.assertEqual(bool(result["check"]["violations"]), bool(code))
+            for violation in result["check"]["violations"]:
+                self.assertIn(violation["message"], verdict)
+                self.assertLess(violation["at"], len(result["route"]))
+        self.altiplan("view", "mission.plan", "-o", "page.html", code=2)
+        self.altiplan("view", "mission.plan", "--terrain", TERRAIN, "--mp4", "film.mp4", code=2)
+        _, err = self.altiplan("edit", "mission.plan", code=3)
+        self.assertIn("altiplan view MISSION --terrain DEM", err)
 
     def test_options(self):
         _, err = self.altiplan("export", "mission.plan", "-o", "other.plan", code=2)

@@ -56,13 +56,17 @@ std::string left_out(const PlanCheck& plan) {
   return all.empty() ? "" : "not judged: " + all;
 }
 
+/// "mission.plan, 16 waypoints, 10.713 km, at least 53.1 m above ground, 17.9 to 21.7 min"
+std::string figures_of(const PlanReport& report) {
+  return host::printable(report.file) + ", " + std::to_string(report.measures.waypoints) +
+         " waypoints, " + fixed(report.measures.length_m / 1000, 3) + " km, " +
+         report.height_in_words() + ", " + time_in_words(report.time);
+}
+
 void print(const PlanReport& report, const host::Mission& world) {
   const Color color = report.passed() ? Color::good : Color::bad;
-  std::printf("%s: %s, %zu waypoints, %s km, %s, %s\n",
-              painted(stdout, color, word_of(report.verdict())).c_str(),
-              host::printable(report.file).c_str(), report.measures.waypoints,
-              fixed(report.measures.length_m / 1000, 3).c_str(), report.height_in_words().c_str(),
-              time_in_words(report.time).c_str());
+  std::printf("%s: %s\n", painted(stdout, color, word_of(report.verdict())).c_str(),
+              figures_of(report).c_str());
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
     if (finding.at) {
@@ -381,6 +385,10 @@ std::vector<std::string> JudgedPlan::findings() const {
     lines.push_back(items_of(finding) + ": " + finding.violation.message);
   }
   return lines;
+}
+
+std::string JudgedPlan::verdict() const {
+  return std::string(word_of(report.verdict())) + ": " + figures_of(report);
 }
 
 JudgedPlan judged_plan(const PlanCheck& given, const host::Overrides& overrides) {

@@ -41,6 +41,8 @@ struct JudgedPlan {
 
   /// What is wrong with it, a line each.
   std::vector<std::string> findings() const;
+  /// "pass: mission.plan, 16 waypoints, 10.713 km, at least 53.1 m above ground, 17.9 to 21.7 min"
+  std::string verdict() const;
 };
 
 /// Judges a ground station's mission; prints and writes nothing.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "commands.hpp"
@@ -9,6 +10,7 @@
 #include "host/view/picture_svg.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
+#include "mission_options.hpp"
 #include "progress.hpp"
 
 namespace altiplan::cli {
@@ -22,7 +24,13 @@ struct ViewArguments {
   std::optional<std::string> mp4;
   std::optional<double> mp4_seconds;
   std::optional<double> cut_m;
+  MissionOptions mission;
   host::Overrides overrides;
+
+  /// The files to be written, with their options.
+  std::array<std::pair<const std::optional<std::string>&, const char*>, 4> outputs() const {
+    return {{{page, "-o"}, {png, "--png"}, {svg, "--svg"}, {mp4, "--mp4"}}};
+  }
 };
 
 /// Bytes above which browsers open a page slowly.
@@ -105,19 +113,11 @@ void write_film(const ViewArguments& arguments, const host::FilmMakers& makers,
 }
 
 std::vector<host::StoredResult> read_results(const ViewArguments& arguments) {
-  const std::pair<const std::optional<std::string>&, const char*> outputs[] = {
-      {arguments.page, "-o"},
-      {arguments.png, "--png"},
-      {arguments.svg, "--svg"},
-      {arguments.mp4, "--mp4"}};
-  for (const auto& [file, option] : outputs) {
-    expect_writable(file, option);
-  }
   std::vector<host::StoredResult> results;
   for (const std::string& file : arguments.results) {
     results.push_back(host::read_result(file, arguments.overrides));
     std::vector<std::string> files = files_of(results.back());
-    for (const auto& [output, option] : outputs) {
+    for (const auto& [output, option] : arguments.outputs()) {
       expect_apart(output, option, files);
       files.push_back(output.value_or(""));
     }
@@ -136,10 +136,48 @@ host::Scene scene_of(const std::vector<host::StoredResult>& results) {
   return host::build_scene(results, [&](const std::string& what) { activity.begin(what); });
 }
 
+/// A mission's line as it is flown, with the verdict of `check`.
+host::Scene scene_of_mission(const ViewArguments& arguments) {
+  const std::string& file = arguments.results.front();
+  for (const auto& [output, option] : arguments.outputs()) {
+    expect_apart(output, option, {file});
+  }
+  const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.overrides);
+  const host::PlanReport& report = judged.report;
+  host::JudgedLine shown;
+  shown.file = file;
+  shown.verdict = judged.verdict();
+  shown.status =
+      report.verdict() == host::Verdict::pass ? host::RunStatus::solved : host::RunStatus::rejected;
+  // What is refused at upload flies nowhere: as it is drawn.
+  shown.line = report.line.empty() ? report.imported.route : Route(report.line);
+  shown.measures = report.measures;
+  shown.notes = report.notes;
+  const std::vector<std::string> findings = judged.findings();
+  for (std::size_t n = 0; n < findings.size(); ++n) {
+    Violation violation = report.findings[n].violation;
+    violation.message = findings[n];
+    violation.at = 0;
+    if (const std::optional<Vec3>& at = report.findings[n].at) {
+      const auto nearest =
+          std::min_element(shown.line.begin(), shown.line.end(), [&](const Vec3& a, const Vec3& b) {
+            return (a - *at).squaredNorm() < (b - *at).squaredNorm();
+          });
+      violation.at = std::size_t(nearest - shown.line.begin());
+    }
+    shown.check.violations.push_back(std::move(violation));
+  }
+  return host::line_scene(shown, judged.world);
+}
+
 int view(const ViewArguments& arguments) {
+  for (const auto& [file, option] : arguments.outputs()) {
+    expect_writable(file, option);
+  }
   const std::optional<host::FilmMakers> makers =
       arguments.mp4 ? std::optional<host::FilmMakers>(std::in_place) : std::nullopt;
-  const host::Scene scene = scene_of(read_results(arguments));
+  const host::Scene scene = arguments.mission.plan.plan.empty() ? scene_of(read_results(arguments))
+                                                                : scene_of_mission(arguments);
   for (const std::string& warning : scene.warnings) {
     warn(warning);
   }
@@ -173,12 +211,23 @@ void add_view(App& app, Action& action) {
     if (!arguments.page && !arguments.png && !arguments.svg && !arguments.mp4) {
       throw UsageError{"-o, --png, --svg or --mp4 is required"};
     }
+    const std::vector<std::string>& files = arguments.results;
+    for (const std::string& file : files) {
+      if (!is_mission(arguments.mission, file)) {
+        continue;
+      }
+      if (files.size() > 1 || arguments.mp4) {
+        throw UsageError{"a mission is shown alone, and not as a film"};
+      }
+      arguments.mission.plan = checked_plan(arguments.mission, file);
+    }
   };
   auto [command, arguments] = add_command<ViewArguments>(
-      app, action, "view", "show results in a 3-D page that works offline", view, prepare);
+      app, action, "view", "show results, or a mission, in a 3-D page that works offline", view,
+      prepare);
   command
       .add_option("results", arguments.results,
-                  "result files of altiplan run, all in the same world (JSON)")
+                  "result files of altiplan run, all in the same world (JSON); or a mission")
       ->required();
   command.add_option("-o,--out FILE", arguments.page, "write the page to this file (HTML)");
   auto* png = command.add_option(
@@ -200,6 +249,7 @@ void add_view(App& app, Action& action) {
                   "length of the film (s); default: a thirtieth of the flight, but 20 to 120 s")
       ->check(number_from(1, 600))
       ->needs(mp4);
+  add_mission_options(command, arguments.mission);
   add_plugin_path(command, arguments.overrides);
   set_example(command, "altiplan view result.json -o page.html");
 }

@@ -108,6 +108,7 @@ class Gate {
       report.parameters.insert(report.parameters.end(), flown.parameters.begin(),
                                flown.parameters.end());
     }
+    report.line = flown_line(all.front());
     report.time = time_of(all);
     add_times(report, all);
     add_cures(report);

@@ -48,6 +48,7 @@ struct PlanReport {
   std::vector<Parameters::Used> parameters;    ///< that mattered
   std::vector<Finding> findings;               ///< none: passed
   std::vector<ReportedPart> parts;             ///< flown by the first of the autopilots
+  Polyline line;                               ///< one that it may fly, for pictures
   TimeSpan time;                               ///< by any of them: the only time of the mission
   std::vector<TimeSpan> times;                 ///< when each point of the drawn route is left first
   double lowest_m = kInfinity;                 ///< above ground, but where it takes off and lands
@@ -64,6 +65,10 @@ struct PlanReport {
   /// "at least 52.4 m above ground", of the flight.
   std::string height_in_words() const;
 };
+
+/// One of the lines that the flight may follow: in each part the longest, in the middle between its
+/// least and its greatest heights.
+Polyline flown_line(const FlownMission& flown);
 
 /// "pass", "fail", "not judged"
 const char* word_of(Verdict verdict);

@@ -27,7 +27,8 @@ std::string time_in_words(const TimeSpan& time) {
   if (!std::isfinite(time.max_s)) {
     return std::isfinite(time.min_s) ? minutes(time.min_s) + " min or more" : "without end";
   }
-  return minutes(time.min_s) + " to " + minutes(time.max_s) + " min";
+  return time.max_s == 0 ? "not flown"
+                         : minutes(time.min_s) + " to " + minutes(time.max_s) + " min";
 }
 
 std::string PlanReport::name_of(std::size_t command) const {

@@ -9,19 +9,6 @@
 namespace altiplan::host {
 namespace {
 
-/// The route with room around it.
-Box shown_box(const Route& route) {
-  constexpr double kMinMargin = 300;  // metres
-  Box box = Box::empty();
-  for (std::size_t i = 0; i < route.leg_count(); ++i) {
-    for (const Vec3& p : route.leg(i).chords(1)) {
-      box = box.united(Box{p, p});
-    }
-  }
-  box = box.united(Box{route.front(), route.front()});
-  return box.grown(std::max(kMinMargin, (box.max - box.min).norm() * 0.1));
-}
-
 bool is_beside(const Json& outline, const Box& box) {
   const auto all = [&](int axis, const auto& is_off) {
     return std::all_of(outline.begin(), outline.end(),
@@ -34,17 +21,6 @@ bool is_beside(const Json& outline, const Box& box) {
     }
   }
   return false;
-}
-
-/// Thousands of zones of a country would fill the file.
-void drop_what_is_beside(Json& scene, const Box& box) {
-  auto& solids = scene["solids"].get_ref<Json::array_t&>();
-  solids.erase(std::remove_if(solids.begin(), solids.end(),
-                              [&](const Json& solid) {
-                                return solid.contains("outline") &&
-                                       is_beside(solid.at("outline"), box);
-                              }),
-               solids.end());
 }
 
 /// A dot at each waypoint, and its label where it is not on another.
@@ -82,12 +58,34 @@ Json points_json(const Route& route) {
 }
 }  // namespace
 
+Box box_about(const Route& route) {
+  constexpr double kMinMargin = 300;  // metres
+  Box box = Box::empty();
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    for (const Vec3& p : route.leg(i).chords(1)) {
+      box = box.united(Box{p, p});
+    }
+  }
+  box = box.united(Box{route.front(), route.front()});
+  return box.grown(std::max(kMinMargin, (box.max - box.min).norm() * 0.1));
+}
+
+void drop_what_is_beside(Json& scene, const Box& box) {
+  auto& solids = scene["solids"].get_ref<Json::array_t&>();
+  solids.erase(std::remove_if(solids.begin(), solids.end(),
+                              [&](const Json& solid) {
+                                return solid.contains("outline") &&
+                                       is_beside(solid.at("outline"), box);
+                              }),
+               solids.end());
+}
+
 std::string map_svg(const Route& route, const std::vector<std::string>& labels,
                     const Mission& world) {
   using namespace picture;
   constexpr double kWidth = 1600;
   constexpr double kMaxHeight = 900;
-  const Box box = shown_box(route);
+  const Box box = box_about(route);
   SceneNotes notes;
   Json scene{{"box", {rounded(box.min), rounded(box.max)}},
              {"ground", ground_json(world.truth, box, notes)},

@@ -74,24 +74,8 @@ Json attribution_json(const World& truth, const std::vector<FlightEvent>& events
   return lines;
 }
 
-/// Everything in the results' world, without the results.
-Json world_scene(const Config& config, const Mission& mission, const Box& box, SceneNotes& notes) {
-  const std::vector<FlightEvent> events = build_events(config, mission);
-  Json scene;
-  scene["altiplan_scene"] = kSceneVersion;
-  scene["title"] =
-      config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
-  scene["attribution"] = attribution_json(mission.truth, events);
-  scene["box"] = Json::array();
-  scene["corners_lonlat"] = corners_json(mission.truth.frame(), box);
-  scene.update(ends_scene(mission));
-  scene["ground"] = ground_json(mission.truth, box, notes);
-  scene.update(obstacles_scene(mission, events, box, notes));
-  if (const auto& body = mission.request.vehicle.body) {
-    scene["body"] = body_json(*body);
-  }
-  scene["box"] = {rounded(box.min), rounded(box.max)};
-  return scene;
+std::string title_of(const Config& config) {
+  return config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
 }
 
 /// The part of a run's overrides that changes its world.
@@ -200,11 +184,12 @@ class SceneBuilder {
     if (scene_.is_null()) {
       box_ = scene_box(mission, results_);
       seed_ = config.seed;
-      scene_ = world_scene(config, mission, box_, notes_);
+      scene_ = world_scene(title_of(config), mission, build_events(config, mission), box_, notes_);
     } else if (config.seed != seed_) {
       // Only the built worlds show whether a layer depends on the run's seed.
       SceneNotes unused;
-      if (world_scene(config, mission, box_, unused) != scene_) {
+      if (world_scene(title_of(config), mission, build_events(config, mission), box_, unused) !=
+          scene_) {
         refuse(results_.front(), "with the seed " + std::to_string(seed_), of,
                "with the seed " + std::to_string(config.seed) +
                    ", which the scenario's layers or moving obstacles follow");
@@ -243,6 +228,24 @@ class SceneBuilder {
   SceneNotes notes_;
 };
 }  // namespace
+
+Json world_scene(const std::string& title, const Mission& mission,
+                 const std::vector<FlightEvent>& events, const Box& box, SceneNotes& notes) {
+  Json scene;
+  scene["altiplan_scene"] = kSceneVersion;
+  scene["title"] = title;
+  scene["attribution"] = attribution_json(mission.truth, events);
+  scene["box"] = Json::array();
+  scene["corners_lonlat"] = corners_json(mission.truth.frame(), box);
+  scene.update(ends_scene(mission));
+  scene["ground"] = ground_json(mission.truth, box, notes);
+  scene.update(obstacles_scene(mission, events, box, notes));
+  if (const auto& body = mission.request.vehicle.body) {
+    scene["body"] = body_json(*body);
+  }
+  scene["box"] = {rounded(box.min), rounded(box.max)};
+  return scene;
+}
 
 Json ends_scene(const Mission& mission) {
   Json scene{{"start", rounded(mission.request.start.position)},

@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/check.hpp"
+#include "altiplan/measures.hpp"
+#include "host/base/run_status.hpp"
+#include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
 
 namespace altiplan::host {
@@ -21,4 +25,18 @@ using SceneProgress = std::function<void(const std::string& what)>;
 /// The world of the results, rebuilt from their files, with their routes and flights. Throws Error
 /// if they are not of the same world, and as load_config and build_mission do.
 Scene build_scene(const std::vector<StoredResult>& results, const SceneProgress& progress = {});
+
+/// A line with a verdict that is not the judge's of routes.
+struct JudgedLine {
+  std::string file;
+  std::string verdict;  ///< one line, the scene's title
+  RunStatus status = RunStatus::solved;
+  Route line;
+  CheckResult check;  ///< its violations are at points of the line
+  Measures measures;
+  std::vector<std::string> notes;
+};
+
+/// The world around the line, and the line.
+Scene line_scene(const JudgedLine& judged, const Mission& world);
 }  // namespace altiplan::host

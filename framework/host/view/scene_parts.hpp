@@ -48,6 +48,16 @@ Json ground_json(const World& world, const Box& box, SceneNotes& notes);
 /// The box to show: the volume and all routes and tracks, never flat.
 Box scene_box(const Mission& mission, const std::vector<StoredResult>& results);
 
+/// A route with room around it.
+Box box_about(const Route& route);
+
+/// Thousands of zones of a country would fill the file.
+void drop_what_is_beside(Json& scene, const Box& box);
+
+/// Everything in a world, without results.
+Json world_scene(const std::string& title, const Mission& mission,
+                 const std::vector<FlightEvent>& events, const Box& box, SceneNotes& notes);
+
 /// `start`, `goal`, `via` and `loiters`.
 Json ends_scene(const Mission& mission);
 
@@ -129,6 +139,9 @@ SolidProfile solid_profile(const Json& profile, const Box& volume);
 /// heights around the route's own or nearest to it, null where there is none nearby, within half a
 /// metre; and its SolidProfile.
 void add_heights(Json& profile, const Request& request);
+
+/// The limits on routes, null if there are none.
+Json limits_json(const Request& request);
 
 /// The stored flight, judged now, its track thinned to what is visible.
 Json flight_scene(const StoredResult& stored, const Mission& mission,

@@ -10,19 +10,6 @@ namespace {
 
 constexpr std::size_t kMaxViolations = 1000;
 
-/// The limit on routes, null if there is none.
-Json limits_json(const Request& request) {
-  const Limits& limits = request.limits;
-  const double clearance = std::max(limits.min_clearance, request.vehicle.radius_m);
-  const auto below = [](double limit, double any) {
-    return limit < any ? rounded(degrees(limit)) : Json(nullptr);
-  };
-  return {{"clearance_m", clearance > 0 ? rounded(clearance) : Json(nullptr)},
-          {"ground_clearance_m", rounded(limits.min_ground_clearance)},
-          {"turn_deg", below(limits.max_turn_horizontal, kPi)},
-          {"climb_deg", below(limits.max_climb, kPi / 2)}};
-}
-
 /// A route, and the judge's present verdict on it.
 struct Judged {
   Route route;
@@ -126,6 +113,18 @@ void conclude(Json& json, const StoredResult& stored, const std::optional<Judged
   }
 }
 }  // namespace
+
+Json limits_json(const Request& request) {
+  const Limits& limits = request.limits;
+  const double clearance = std::max(limits.min_clearance, request.vehicle.radius_m);
+  const auto below = [](double limit, double any) {
+    return limit < any ? rounded(degrees(limit)) : Json(nullptr);
+  };
+  return {{"clearance_m", clearance > 0 ? rounded(clearance) : Json(nullptr)},
+          {"ground_clearance_m", rounded(limits.min_ground_clearance)},
+          {"turn_deg", below(limits.max_turn_horizontal, kPi)},
+          {"climb_deg", below(limits.max_climb, kPi / 2)}};
+}
 
 void copy_texts(Json& to, const Json& from, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
