@@ -102,10 +102,12 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
     text += "  - zones: {file: " + path_text(file) + more +
             "}\n    id: " + host::exact_json_text(name) + "\n";
   };
+  const double seconds = plan.start_time ? horizon_s(plan, mission) : 0;
   for (const std::string& file : plan.airspace) {
-    add_zones(file, name_of(file),
-              ", horizon_s: " + host::exact_json_text(horizon_s(plan, mission)) +
-                  (plan.has_permission ? ", ask: skip" : ""));
+    const std::string hours = plan.start_time  // else zones count at all hours
+                                  ? ", horizon_s: " + host::exact_json_text(seconds)
+                                  : "";
+    add_zones(file, name_of(file), hours + (plan.has_permission ? ", ask: skip" : ""));
   }
   if (has_fence(mission)) {
     add_zones(plan.plan, "fence of the mission", ", keep_in: all");

@@ -108,14 +108,16 @@ class FlownLine {
         to_(frame.to_lonlat(to.x(), to.y())),
         is_px4_(is_px4) {
     constexpr double kEarth = 6'371'000;
-    const auto [metres, bearing_deg] = geodesic_course(from_, to_);
-    metres_ = metres;
-    bearing_deg_ = bearing_deg;
+    if (is_px4) {
+      const auto [metres, bearing_deg] = geodesic_course(from_, to_);
+      metres_ = metres;
+      bearing_deg_ = bearing_deg;
+    }
     to_[0] = longitude_near(to_[0], from_[0]);
     const GroundRadii radii = ground_radii((from_[1] + to_[1]) / 2);
     const double east = radians(to_[0] - from_[0]) * radii.east;
     const double tangent = kEarth / radii.east;  // more than the latitude's
-    doubt_m_ = is_px4 ? std::pow(metres, 3) / (8 * kEarth * kEarth)
+    doubt_m_ = is_px4 ? std::pow(metres_, 3) / (8 * kEarth * kEarth)
                       : std::abs(east * tangent * radians(to_[1] - from_[1])) / 8;
   }
 

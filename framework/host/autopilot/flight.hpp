@@ -216,6 +216,8 @@ class Wing {
   double changing_mps_[2];             ///< the speeds, and those before them
   double climb_mps_;
   double sink_mps_;
-  double l1_s_;  ///< distance of guidance a speed
+  double l1_s_;         ///< distance of guidance a speed
+  double slope_min_m_;  ///< ALT_SLOPE_MIN
+  double lag_s_;        ///< of heights that are sought
 };
 }  // namespace altiplan::host

@@ -49,6 +49,8 @@ Wing::Wing(Flight& flight) : flight_(flight) {
   sink_mps_ = flight.parameter(is_px4 ? "FW_T_SINK_R_SP" : "TECS_SINK_MAX");
   l1_s_ =
       is_px4 ? 2.24 : 0.318 * flight.parameter("NAVL1_DAMPING") * flight.parameter("NAVL1_PERIOD");
+  slope_min_m_ = is_px4 ? 0 : flight.parameter("ALT_SLOPE_MIN");
+  lag_s_ = is_px4 ? 1 : flight.parameter("TECS_HDEM_TCONST");
   const double v = flight.parameter(is_px4 ? "FW_AIRSPD_TRIM" : "AIRSPEED_CRUISE");
   set_speed(v, v);
 }
@@ -181,9 +183,7 @@ double Wing::sought_height(const Leg& leg, double share) const {
     }
     return from_.low + rise * std::min(1.0, share * length / (length - level));
   }
-  return leg.at_once || std::abs(rise) < flight_.parameter("ALT_SLOPE_MIN")
-             ? leg.to.low
-             : from_.low + share * rise;
+  return leg.at_once || std::abs(rise) < slope_min_m_ ? leg.to.low : from_.low + share * rise;
 }
 
 double Wing::highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
@@ -200,11 +200,10 @@ double Wing::highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eige
 }
 
 void Wing::seek_heights(Member& member, double sought, double highest, double seconds) const {
-  const double lag = flight_.autopilot().is_px4() ? 1 : flight_.parameter("TECS_HDEM_TCONST");
   // The low one sinks quickly and climbs slowly, the high one the other way round.
   const auto seek = [&](double z, double wanted, double sinks, double climbs) {
     const double quick = wanted < z ? sinks : climbs;
-    return z + seconds * std::clamp((wanted - z) / (lag / (quick * quick)), -sink_mps_ * sinks,
+    return z + seconds * std::clamp((wanted - z) / (lag_s_ / (quick * quick)), -sink_mps_ * sinks,
                                     climb_mps_ * climbs);
   };
   member.low = seek(member.low, sought, kQuick, kSlow);

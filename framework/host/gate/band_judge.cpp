@@ -93,12 +93,7 @@ const BandJudge::Requests& BandJudge::within(double reach_m) const {
   return by_reach_.emplace(reach, std::move(requests)).first->second;
 }
 
-void BandJudge::add_suspects(std::span<const Strip> strips, std::vector<bool>& is_suspect,
-                             std::size_t first) const {
-  if (strips.size() < 2) {
-    is_suspect[first] = true;
-    return;
-  }
+bool BandJudge::is_clear(std::span<const Strip> strips) const {
   // A line from end to end, and how far any strip reaches from it: a strip is convex, so that none
   // of its points is farther away than its corners.
   const Vec3& a = strips.front().from;
@@ -112,20 +107,18 @@ void BandJudge::add_suspects(std::span<const Strip> strips, std::vector<bool>& i
   }
   // Rounded up to half octaves: a request is made for each reach.
   reach = std::exp2(std::ceil(2 * std::log2(std::max(reach, 1.0))) / 2);
-  if (leg_ok(std::nullopt, Leg::straight(a, b), within(reach).sky)) {
-    return;
-  }
-  const std::size_t half = strips.size() / 2;
-  add_suspects(strips.first(half), is_suspect, first);
-  add_suspects(strips.subspan(half), is_suspect, first + half);
+  return leg_ok(std::nullopt, Leg::straight(a, b), within(reach).sky);
 }
 
-std::vector<bool> BandJudge::suspects_in(const FlownPart& part) const {
-  std::vector<bool> is_suspect(part.strips.size(), false);
-  if (!sky_.layers().empty() && !part.strips.empty()) {
-    add_suspects(part.strips, is_suspect, 0);
+bool BandJudge::look_at_suspects(std::span<const Strip> strips,
+                                 const std::function<bool(const Line&)>& look) const {
+  if (strips.size() < 2) {
+    const std::vector<Line> lines = lines_of(strips.front(), false);
+    return std::all_of(lines.begin(), lines.end(), look);
   }
-  return is_suspect;
+  const std::size_t half = strips.size() / 2;
+  return is_clear(strips) || (look_at_suspects(strips.first(half), look) &&
+                              look_at_suspects(strips.subspan(half), look));
 }
 
 std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_ground) {
@@ -142,6 +135,7 @@ std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_gr
   const Vec3 aside = strip.reach_m > 0 && has_ground
                          ? Vec3(Vec3(-along.y(), along.x(), 0).normalized() * strip.reach_m)
                          : Vec3(0, 0, 0);
+  lines.reserve(std::size_t(count) + 4);
   for (int n = 0; n < count; ++n) {
     const double share = count > 1 ? double(n) / (count - 1) : 0;
     const Vec3 up_from(0, 0, share * (strip.from_high_m - strip.from.z()));
@@ -158,20 +152,25 @@ std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_gr
   return lines;
 }
 
-void BandJudge::judge_sky(const Line& line, std::vector<Worst>& worst) const {
-  const Request& sky = within(line.reach_m).sky;
-  if (looked_at_ >= kLookedAt || leg_ok(std::nullopt, line.leg, sky)) {
+void BandJudge::judge_sky(const FlownPart& part, std::vector<Worst>& worst) const {
+  if (sky_.layers().empty() || part.strips.empty()) {
     return;
   }
-  ++looked_at_;
-  for (Violation& violation : leg_violations(std::nullopt, line.leg, sky, 0)) {
-    keep_worst(worst, std::move(violation), line);
-  }
+  int looked_at = 0;
+  look_at_suspects(part.strips, [&](const Line& line) {
+    const Request& sky = within(line.reach_m).sky;
+    if (!leg_ok(std::nullopt, line.leg, sky)) {
+      ++looked_at;
+      for (Violation& violation : leg_violations(std::nullopt, line.leg, sky, 0)) {
+        keep_worst(worst, std::move(violation), line);
+      }
+    }
+    return looked_at < kLookedAt;
+  });
 }
 
 void BandJudge::judge_end(const Line& line, FlownPart::Ground ground,
                           std::vector<Worst>& worst) const {
-  judge_sky(line, worst);
   if (is_too_high(line.leg)) {
     for (Violation& violation : leg_violations(std::nullopt, line.leg, within(0).ground, 0)) {
       if (violation.constraint == "altitude" && violation.value > violation.limit) {
@@ -234,23 +233,18 @@ Vec3 BandJudge::place_of(const Worst& worst) const {
 
 std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const {
   std::vector<Worst> worst;
-  looked_at_ = 0;
-  const std::vector<bool> is_suspect = suspects_in(part);
+  judge_sky(part, worst);
   std::vector<Line> invalid;
-  for (std::size_t n = 0; n < part.strips.size(); ++n) {
-    std::vector<Line> lines = lines_of(part.strips[n], request_.world->has_ground());
+  for (const Strip& strip : part.strips) {
+    std::vector<Line> lines = lines_of(strip, request_.world->has_ground());
     if (invalid.size() > kEnough && lines.size() > 2) {
       lines = {lines.front(), lines.back()};  // it fails: the lowest and the highest tell how far
     }
     for (const Line& line : lines) {
-      const Requests& requests = within(line.reach_m);
       if (part.ground != FlownPart::Ground::kept_off) {
         judge_end(line, part.ground, worst);
-      } else if (!leg_ok(std::nullopt, line.leg, is_suspect[n] ? requests.all : requests.ground)) {
+      } else if (!leg_ok(std::nullopt, line.leg, within(line.reach_m).ground)) {
         invalid.push_back(line);
-        if (is_suspect[n]) {
-          judge_sky(line, worst);
-        }
       }
     }
   }
@@ -269,24 +263,22 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
 
 bool BandJudge::is_valid(const FlownPart& part) const {
   using Ground = FlownPart::Ground;
-  const std::vector<bool> is_suspect = suspects_in(part);
-  const auto is_line_valid = [&](const Line& line, bool is_sky_clear) {
-    const Requests& requests = within(line.reach_m);
-    if (part.ground == Ground::kept_off) {
-      return leg_ok(std::nullopt, line.leg, is_sky_clear ? requests.ground : requests.all);
-    }
-    return (is_sky_clear || leg_ok(std::nullopt, line.leg, requests.sky)) &&
-           !is_too_high(line.leg) &&
-           !(part.ground == Ground::touched_along && is_below_ground(line.leg));
-  };
-  for (std::size_t n = 0; n < part.strips.size(); ++n) {
-    for (const Line& line : lines_of(part.strips[n], request_.world->has_ground())) {
-      if (!is_line_valid(line, !is_suspect[n])) {
-        return false;
-      }
-    }
+  const bool may_block = !sky_.layers().empty() && !part.strips.empty();
+  if (may_block && !look_at_suspects(part.strips, [&](const Line& line) {
+        return leg_ok(std::nullopt, line.leg, within(line.reach_m).sky);
+      })) {
+    return false;
   }
-  return true;
+  const auto is_line_valid = [&](const Line& line) {
+    return part.ground == Ground::kept_off
+               ? leg_ok(std::nullopt, line.leg, within(line.reach_m).ground)
+               : !is_too_high(line.leg) &&
+                     !(part.ground == Ground::touched_along && is_below_ground(line.leg));
+  };
+  return std::all_of(part.strips.begin(), part.strips.end(), [&](const Strip& strip) {
+    const std::vector<Line> lines = lines_of(strip, request_.world->has_ground());
+    return std::all_of(lines.begin(), lines.end(), is_line_valid);
+  });
 }
 
 LegHeights BandJudge::heights(const FlownPart& part) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -54,11 +55,11 @@ class BandJudge {
 
   static std::vector<Line> lines_of(const Strip& strip, bool has_ground);
   const Requests& within(double reach_m) const;
-  /// Those of the strips that may violate the sky: halves of them are held against it as a whole,
-  /// until they are clear or one strip is left.
-  void add_suspects(std::span<const Strip> strips, std::vector<bool>& is_suspect,
-                    std::size_t first) const;
-  std::vector<bool> suspects_in(const FlownPart& part) const;
+  /// Looks at lines of the strips that may violate the sky, until `look` has seen enough (false):
+  /// halves of the strips are held against it as a whole, until they are clear or one is left.
+  bool look_at_suspects(std::span<const Strip> strips,
+                        const std::function<bool(const Line&)>& look) const;
+  bool is_clear(std::span<const Strip> strips) const;
   /// Of lines that are not valid those that tell how bad it is, the lowest, the highest and some
   /// between: to find out takes long.
   std::vector<Line> telling(const std::vector<Line>& lines) const;
@@ -67,13 +68,12 @@ class BandJudge {
   bool is_too_high(const Leg& leg) const;
   bool is_below_ground(const Leg& leg) const;
   /// The sky's violations, of the first lines that have one: to find out how bad one is takes long.
-  void judge_sky(const Line& line, std::vector<Worst>& worst) const;
+  void judge_sky(const FlownPart& part, std::vector<Worst>& worst) const;
   Vec3 place_of(const Worst& worst) const;
 
   Request request_;
   World sky_;     ///< its layers without ground
   World ground_;  ///< the others
   mutable std::map<double, Requests> by_reach_;
-  mutable int looked_at_ = 0;  ///< lines of this part whose violations of the sky are known
 };
 }  // namespace altiplan::host

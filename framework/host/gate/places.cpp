@@ -72,6 +72,7 @@ void expect_on_ground(const formats::MissionFile& plan, const World& world) {
 void add_rally(PlanReport& report, const formats::MissionFile& plan, const Request& request) {
   Request alone = request;
   alone.limits.min_leg = 0;  // a place has no length
+  ZoneNames names(*request.world);
   for (std::size_t n = 0; n < plan.rally.size(); ++n) {
     const auto add = [&](Finding finding) {
       finding.items = {"rally point " + std::to_string(n + 1)};
@@ -85,7 +86,7 @@ void add_rally(PlanReport& report, const formats::MissionFile& plan, const Reque
         Finding finding;
         finding.violation = violation;
         finding.at = p;
-        name_zone(finding, *request.world);
+        names.add_to(finding);
         name_void(finding, *request.world);
         add(std::move(finding));
       }

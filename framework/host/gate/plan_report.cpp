@@ -91,6 +91,7 @@ class Gate {
         request_(world.request),
         options_(options),
         judge_(judged_request(world)),
+        names_(world_),
         is_drawn_(plan.commands.empty() && !options.firmware && !options.airframe) {
     request_.world = std::make_shared<const World>(world.truth);
     if (!is_drawn_) {
@@ -213,7 +214,7 @@ class Gate {
     finding.what = part.what;
     finding.item = number_of(part.command);
     finding.at = found.at;
-    name_zone(finding, world_);
+    names_.add_to(finding);
     name_void(finding, world_);
     if (!part.what.empty()) {
       finding.violation.message = part.what + ": " + finding.violation.message;
@@ -323,6 +324,7 @@ class Gate {
   Request request_;
   const GateOptions& options_;
   BandJudge judge_;
+  ZoneNames names_;
   bool is_drawn_;
   std::vector<Autopilot> autopilots_;
   /// Of each finding, if it is of a way: from and to which command.
@@ -361,6 +363,7 @@ double length_on_ground(const Route& route, const Frame& frame) {
 /// What a scenario demands of the whole route: its ends, its turns, its length.
 void add_route_violations(PlanReport& report, const Mission& world, const Request& request) {
   const Route& route = report.imported.route;
+  ZoneNames names(*request.world);
   for (const Violation& violation : judge(route, request, world.via).violations) {
     const bool is_known = std::any_of(
         report.findings.begin(), report.findings.end(),
@@ -375,7 +378,7 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
     if (violation.at < route.leg_count()) {
       finding.items.push_back(report.name_of_point(violation.at + 1));
     }
-    name_zone(finding, *request.world);
+    names.add_to(finding);
     report.findings.push_back(std::move(finding));
   }
 }

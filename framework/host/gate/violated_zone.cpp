@@ -12,8 +12,7 @@ namespace {
 /// keep-in zones one of which must hold the place it is the one that the place is deepest in, as
 /// far as its border; where all must, the one whose border is nearest, or that it is farthest out
 /// of.
-std::string part_at(const Layer& layer, const Vec3& p) {
-  const std::optional<Drawing> drawing = layer.environment->drawing();
+std::string part_at(const std::optional<Drawing>& drawing, const Vec3& p) {
   const Drawn* in_the_way = nullptr;
   const Drawn* around = nullptr;
   double nearest = kInfinity;
@@ -21,7 +20,15 @@ std::string part_at(const Layer& layer, const Vec3& p) {
   if (!drawing) {
     return "";
   }
+  const auto is_beyond = [&](const Shape& shape) {  // farther than the nearest, by its box alone
+    const Box box = bounds(shape);
+    const Vec3 off = (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0);
+    return off.norm() > std::max(nearest, 0.0);
+  };
   for (const Drawn& drawn : drawing->shapes) {
+    if (drawn.role != Drawn::Role::keep_in && nearest < kInfinity && is_beyond(drawn.shape)) {
+      continue;
+    }
     const double distance = signed_distance(drawn.shape, p);
     if (drawn.role != Drawn::Role::keep_in) {
       in_the_way = distance < nearest ? &drawn : in_the_way;
@@ -37,10 +44,14 @@ std::string part_at(const Layer& layer, const Vec3& p) {
 }
 }  // namespace
 
-void name_zone(Finding& finding, const World& world) {
-  const Layer* layer = world.find(finding.violation.layer);
+void ZoneNames::add_to(Finding& finding) {
+  const Layer* layer = world_.find(finding.violation.layer);
   if (layer != nullptr && finding.at) {
-    finding.zone = part_at(*layer, *finding.at);
+    auto drawing = drawings_.find(layer->id);
+    if (drawing == drawings_.end()) {
+      drawing = drawings_.emplace(layer->id, layer->environment->drawing()).first;
+    }
+    finding.zone = part_at(drawing->second, *finding.at);
     if (!finding.zone.empty()) {
       finding.violation.message += ": '" + finding.zone + "' of '" + layer->id + "'";
     }
