@@ -12,7 +12,7 @@ import unittest
 
 HOME = "47,8,500"
 SPEEDUP = 10
-PX4_SPEEDUP = 2  # OFFBOARD ends 0.5 s of flight after the last set-point
+PX4_SPEEDUP = 2  # OFFBOARD ends 1 s of flight after the last set-point
 COPTER = "{speed_mps: 8, sensing_m: 200}"
 PLANE = "{wing: {airspeed_mps: 22, bank_deg: 35}, sensing_m: 900}"
 SCENARIO = """altiplan: 1

@@ -9,6 +9,9 @@ from flown_case import SPEEDUP, FlownCase, unittest
 FlownCase.program, FlownCase.sources = sys.argv[1:3]
 COPTERS = ("generic", "ardupilot", "px4")
 TAKEOFF = ("--takeoff", "--home-altitude", "500")
+# So that each ends in a hold when nothing reaches it; of a generic one that is not known.
+HOLDING = {"px4": ("--parameter", "COM_OBL_RC_ACT=5")}
+ACCEPTED = {"generic": ("--accept-failsafe",)}
 
 
 class Fly(FlownCase):
@@ -46,9 +49,11 @@ class Fly(FlownCase):
             result = self.planned(kind, pop_up=True)
             for autopilot in autopilots:
                 with self.subTest(autopilot=autopilot, kind=kind):
-                    vehicle = self.vehicle("--autopilot", autopilot, "--type", kind)
-                    options = TAKEOFF if kind == "copter" else ()
+                    vehicle = self.vehicle("--autopilot", autopilot, "--type", kind,
+                                           *HOLDING.get(autopilot, ()))
+                    options = (TAKEOFF if kind == "copter" else ()) + ACCEPTED.get(autopilot, ())
                     code, flight, out = self.fly(result, vehicle, "--arm", "--command", *options)
+                    self.assertIn("when nothing reaches the vehicle any more, ", out)
                     self.expect_flown(code, flight, out)
                     self.assertEqual([handover["to"] for handover in flight["handovers"]],
                                      ["velocity_field", "route"])
@@ -73,7 +78,7 @@ class Fly(FlownCase):
         """PX4's receiver accepts each; without set-points OFFBOARD is refused afterwards."""
         faults = ('[{"fault": "lose", "direction": "in", "count": 8, "message":'
                   ' ["SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED"]}]')
-        vehicle = self.vehicle("--autopilot", "px4", "--faults", faults)
+        vehicle = self.vehicle("--autopilot", "px4", "--faults", faults, *HOLDING["px4"])
         code, flight, out = self.fly(self.planned(pop_up=True), vehicle, "--arm", "--command", *TAKEOFF)
         self.expect_flown(code, flight, out)
         self.assertIn("GUIDED", vehicle.modes())
@@ -124,7 +129,8 @@ class Fly(FlownCase):
         result = self.planned(pop_up=True)
         for number, autopilot in ((signal.SIGKILL, "ardupilot"), (signal.SIGINT, "px4")):
             with self.subTest(signal=number):
-                vehicle = self.vehicle("--autopilot", autopilot, speedup=3)
+                vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
+                                       speedup=3)
                 process = self.flying(result, vehicle, *TAKEOFF, "--arm", "--command")
                 self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1:] == ["GUIDED"] and
                                              vehicle.log("setpoint"), 60))
@@ -134,7 +140,8 @@ class Fly(FlownCase):
 
     def test_a_late_planner_leaves_the_vehicle_in_hold(self):
         vehicle = self.vehicle("--autopilot", "generic", speedup=3)
-        process = self.flying(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm", "--command")
+        process = self.flying(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm", "--command",
+                              "--accept-failsafe")
         self.assertTrue(vehicle.wait(lambda: vehicle.log("setpoint"), 60))
         process.send_signal(signal.SIGSTOP)
         self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 20))
@@ -142,6 +149,34 @@ class Fly(FlownCase):
         self.assertEqual(process.wait(30), 1)
         self.assertIn("which this flight has not asked for", self.flight()["message"])
         self.assertEqual(vehicle.modes()[-1], "HOLD")
+
+    def expect_nothing_uploaded(self, vehicle):
+        received = {entry["message"] for entry in vehicle.log("received")}
+        self.assertIn("HEARTBEAT", received)
+        self.assertFalse(received & {"MISSION_COUNT", "COMMAND_LONG", "COMMAND_INT"})
+
+    def test_what_is_neither_hold_nor_return_is_not_commanded(self):
+        result = self.planned(pop_up=True)
+        silent = '[{"fault": "lose", "direction": "out", "message": "PARAM_VALUE"}]'
+        for autopilot, options, words in (
+                ("px4", (), "it flies on for 1 s and is in POSCTL"),
+                ("px4", ("COM_OBL_RC_ACT=4",), "lands where it is"),
+                ("px4", ("COM_OBL_RC_ACT=5", "NAV_DLL_ACT=6"), "holds, then disarms"),
+                ("px4", ("COM_OBL_RC_ACT=9",), "what is not known here"),
+                ("ardupilot", ("FS_GCS_ENABLE=5",), "hovers, then lands where it is"),
+                ("ardupilot", ("GUID_TIMEOUT=30.0",), "it flies on for 30 s"),
+                ("ardupilot", (silent,), "it does not tell its parameter GUID_TIMEOUT"),
+                ("generic", (), "its autopilot is neither ArduPilot nor PX4")):
+            with self.subTest(autopilot=autopilot, options=options):
+                more = [part for option in options for part in
+                        ("--faults" if option == silent else "--parameter", option)]
+                vehicle = self.vehicle("--autopilot", autopilot, *more)
+                code, out, err = self.altiplan("fly", result, "--link", vehicle.address, *TAKEOFF,
+                                               "--arm", "--command")
+                self.assertEqual(code, 1, out + err)
+                self.assertIn(words, err)
+                self.assertIn("--accept-failsafe commands it all the same", err)
+                self.expect_nothing_uploaded(vehicle)
 
     def test_terrain_is_answered(self):
         # The world has no ground: nothing is answered, and nothing is harmed.

@@ -9,6 +9,7 @@
 #include "host/import_export/imported_route.hpp"
 #include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
+#include "link/failsafe.hpp"
 #include "link/linked_vehicle.hpp"
 #include "plan_upload.hpp"
 #include "route_export.hpp"
@@ -23,6 +24,7 @@ struct FlyArguments {
   bool no_fence = false;
   bool arm = false;
   bool command = false;
+  bool accept_failsafe = false;
 
   /// "result.flown.json" beside result.json.
   std::string file() const {
@@ -30,6 +32,21 @@ struct FlyArguments {
         std::filesystem::path(route.result).replace_extension(".flown.json").string());
   }
 };
+
+void tell_user(const std::string& message) { std::cerr << "altiplan: " + message + "\n"; }
+
+/// Says what the vehicle does when everything that commands it dies; false where that is neither a
+/// hold nor a return, and not accepted.
+bool accepts_failsafe(Connection& connection, bool accepted) {
+  const link::Failsafe failsafe =
+      link::read_failsafe(connection.link, connection.vehicle, connection.stop);
+  const bool goes_on = failsafe.is_safe || accepted;
+  tell_user("when nothing reaches the vehicle any more, " + failsafe.words +
+      (goes_on ? ""
+               : ": neither a hold nor a return, so nothing was uploaded; --accept-failsafe "
+                 "commands it all the same"));
+  return goes_on;
+}
 
 /// The places of the mission's items along the route, in local metres; a landing is not part of it.
 std::vector<Vec3> places_of(const host::MissionText& text, const LoadedRoute& loaded) {
@@ -117,7 +134,7 @@ int fly(const FlyArguments& arguments, const LoadedRoute& loaded, const host::Ex
   flight.items = by_number(plan, places);
   flight.arm = arguments.arm;
   flight.command = arguments.command;
-  flight.say = [](const std::string& message) { std::cerr << "altiplan: " + message + "\n"; };
+  flight.say = tell_user;
   link::LinkedVehicle vehicle(connection.link, connection.vehicle, loaded.mission.known, flight,
                               connection.stop);
   host::RunResult result = flown(config, places, vehicle, arguments.file(), connection.stop);
@@ -154,7 +171,10 @@ int fly_result(const FlyArguments& arguments) {
     plan.items[goal].params[1] = std::floor(wing->turn_radius() / 2);
   }
   return connected(arguments.link, [&](Connection& connection) {
-    return upload_plan(connection, plan, !arguments.no_fence)
+    const bool is_ready =
+        (!arguments.command || accepts_failsafe(connection, arguments.accept_failsafe)) &&
+        upload_plan(connection, plan, !arguments.no_fence);
+    return is_ready
                ? fly(arguments, *source, *written, plan, connection)
                : kNoRoute;
   });
@@ -179,6 +199,8 @@ void add_fly(App& app, Action& action) {
   command.add_flag("--command", arguments.command,
                    "let the pipeline's local planner command the vehicle off its mission, and "
                    "back");
+  command.add_flag("--accept-failsafe", arguments.accept_failsafe,
+                   "with --command: whatever the vehicle does when nothing reaches it any more");
   command.add_option("-o,--out FILE", arguments.out,
                      "write the result with the flight to this file (JSON, default: "
                      "RESULT.flown.json)");

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from constants import FLAG_AUTO, FLAG_CUSTOM, FLAG_GUIDED, FLAG_STABILIZE
 
 # Modes inside the vehicle; each flavour has numbers for them.
-MANUAL, AUTO, GUIDED, HOLD, RTL, LAND, TAKEOFF = (
-    "MANUAL", "AUTO", "GUIDED", "HOLD", "RTL", "LAND", "TAKEOFF")
+MANUAL, AUTO, GUIDED, HOLD, RTL, LAND, TAKEOFF, POSITION = (
+    "MANUAL", "AUTO", "GUIDED", "HOLD", "RTL", "LAND", "TAKEOFF", "POSITION")
 
 BASE_FLAGS = {MANUAL: 0, AUTO: FLAG_AUTO | FLAG_GUIDED | FLAG_STABILIZE,
               GUIDED: FLAG_GUIDED | FLAG_STABILIZE, HOLD: FLAG_STABILIZE,
               RTL: FLAG_AUTO | FLAG_STABILIZE, LAND: FLAG_AUTO | FLAG_STABILIZE,
-              TAKEOFF: FLAG_AUTO | FLAG_STABILIZE}
+              TAKEOFF: FLAG_AUTO | FLAG_STABILIZE, POSITION: FLAG_STABILIZE}
 
 
 def px4_mode(main, sub=0):
@@ -24,7 +24,7 @@ def px4_mode(main, sub=0):
 ARDUCOPTER = {MANUAL: 0, AUTO: 3, GUIDED: 4, HOLD: 5, RTL: 6, LAND: 9}
 BRAKE = 17  # of ArduCopter: holds too, whatever the sticks do
 ARDUPLANE = {MANUAL: 0, AUTO: 10, RTL: 11, HOLD: 12, TAKEOFF: 13, GUIDED: 15}
-PX4 = {MANUAL: px4_mode(1), GUIDED: px4_mode(6), TAKEOFF: px4_mode(4, 2), HOLD: px4_mode(4, 3),
+PX4 = {MANUAL: px4_mode(1), POSITION: px4_mode(3), GUIDED: px4_mode(6), TAKEOFF: px4_mode(4, 2), HOLD: px4_mode(4, 3),
        AUTO: px4_mode(4, 4), RTL: px4_mode(4, 5), LAND: px4_mode(4, 6)}
 
 
@@ -84,13 +84,19 @@ def mode_of(flavour, kind, base_mode, custom_mode):
 
 COMMON = {"NAVL1_PERIOD": 17.0, "NAVL1_DAMPING": 0.75, "DISARM_DELAY": 10.0, "SYSID_THISMAV": 1.0}
 COPTER = {"WPNAV_SPEED": 10.0, "WPNAV_SPEED_UP": 2.5, "WPNAV_SPEED_DN": 1.5, "WPNAV_RADIUS": 2.0,
-          "GUID_TIMEOUT": 3.0, "COM_OF_LOSS_T": 0.5, "RTL_ALT": 15.0}
+          "GUID_TIMEOUT": 3.0, "RTL_ALT": 15.0}
 PLANE = {"AIRSPEED_CRUISE": 22.0, "AIRSPEED_MIN": 15.0, "AIRSPEED_MAX": 30.0, "WP_RADIUS": 60.0,
          "WP_LOITER_RAD": 80.0, "ROLL_LIMIT_DEG": 45.0, "TECS_CLMB_MAX": 5.0, "TECS_SINK_MAX": 5.0,
-         "COM_OF_LOSS_T": 0.5, "RTL_ALT": 100.0}
+         "RTL_ALT": 100.0}
+# What is done when nothing commands any more, by the defaults of each autopilot; integers are of
+# its integer types.
+FAILSAFES = {("px4", "copter"): {"COM_OF_LOSS_T": 1.0, "COM_OBL_RC_ACT": 0, "NAV_DLL_ACT": 0},
+             ("px4", "plane"): {"COM_OF_LOSS_T": 1.0, "COM_OBL_RC_ACT": 0, "NAV_DLL_ACT": 0},
+             ("ardupilot", "copter"): {"FS_GCS_ENABLE": 0},
+             ("ardupilot", "plane"): {"FS_GCS_ENABL": 0, "FS_LONG_ACTN": 0}}
 
 
-def parameters(kind):
+def parameters(flavour, kind):
     """In metres, seconds and degrees whatever the units of the autopilot whose names they have."""
     own = COPTER if kind == "copter" else PLANE
-    return dict(sorted({**COMMON, **own}.items()))
+    return dict(sorted({**COMMON, **own, **FAILSAFES.get((flavour.name, kind), {})}.items()))

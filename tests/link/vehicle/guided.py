@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """GUIDED, PX4's OFFBOARD: set-points from outside, and what happens when they stop. Copter goes on
-to a position and hovers GUID_TIMEOUT after the last velocity; PX4 leaves OFFBOARD for hold when no
-set-point of any kind came for COM_OF_LOSS_T; a plane circles its last target."""
+to a position and hovers GUID_TIMEOUT after the last velocity; PX4 leaves OFFBOARD for the mode of
+COM_OBL_RC_ACT when no set-point of any kind came for COM_OF_LOSS_T; a plane circles its last
+target."""
 import math
 
 import geodesy
@@ -40,7 +41,7 @@ class Guided:
         self.wanted = Goal("takeoff", target)
 
     def stream_is_fresh(self):
-        return self.pilot.time - self.stamp <= self.pilot.parameters["COM_OF_LOSS_T"]
+        return self.silence() <= self.pilot.parameters["COM_OF_LOSS_T"]
 
     def watch(self):
         """Every step: set-points that stopped."""
@@ -49,7 +50,7 @@ class Guided:
             return
         if pilot.flavour.stream_needed:
             if not self.stream_is_fresh():
-                pilot.failsafe("Failsafe: no set-points, hold")
+                pilot.lose_set_points()
         elif self.wanted.kind == "velocity" and self.silence() > pilot.parameters["GUID_TIMEOUT"]:
             pilot.text(Severity.WARNING, "Guided: set-points stopped")
             self.wanted = pilot.body.stop_here()

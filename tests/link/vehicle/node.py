@@ -4,6 +4,8 @@
 Two times: `now` is of the link (heartbeats, transfers, faults), pilot.time of the flight; a
 speed-up makes the second one faster. A packet has an address of any kind; what the vehicle sends
 goes to every address that it has heard lately."""
+import struct
+
 import codec
 import messages
 from commands import Commands
@@ -19,7 +21,8 @@ FLIGHT_STEP = 0.02  # s
 POSITION_EVERY = 0.1  # s, in the log
 FORGOTTEN_AFTER = 30.0  # s, of an address that is silent
 COMPONENT = 1
-PARAMETER_FLOAT = 9  # MAV_PARAM_TYPE_REAL32
+# MAV_PARAM_TYPE
+PARAMETER_INT8, PARAMETER_INT32, PARAMETER_FLOAT = 2, 6, 9
 
 
 class Node:
@@ -147,18 +150,32 @@ class Node:
 
     def on_param_set(self, message):
         if message.param_id in self.pilot.parameters:
-            # All of them are sizes; the answer has the value that counts.
-            if 0 < message.param_value < 1e5:
-                self.pilot.parameters[message.param_id] = message.param_value
+            is_whole = isinstance(self.pilot.parameters[message.param_id], int)
+            value = message.param_value
+            if is_whole:
+                value = self.whole(value)
+            # The answer has the value that counts.
+            if (0 <= value < 100) if is_whole else (0 < value < 1e5):
+                self.pilot.parameters[message.param_id] = value
             self.send_parameter(message.param_id)
+
+    def whole(self, value):
+        """PX4 takes and sends the bytes of an integer, ArduPilot its value as a float."""
+        if self.pilot.flavour.name == "px4":
+            return struct.unpack("<i", struct.pack("<f", value))[0]
+        return int(value) if abs(value) < 2 ** 31 else -1
 
     def send_parameter(self, name):
         names = list(self.pilot.parameters)
-        if name in names:
-            self.send("PARAM_VALUE", {
-                "param_id": name, "param_value": self.pilot.parameters[name],
-                "param_type": PARAMETER_FLOAT, "param_count": len(names),
-                "param_index": names.index(name)})
+        if name not in names:
+            return
+        value, kind = self.pilot.parameters[name], PARAMETER_FLOAT
+        if isinstance(value, int):
+            is_px4 = self.pilot.flavour.name == "px4"
+            kind = PARAMETER_INT32 if is_px4 else PARAMETER_INT8
+            value = struct.unpack("<f", struct.pack("<i", value))[0] if is_px4 else float(value)
+        self.send("PARAM_VALUE", {"param_id": name, "param_value": value, "param_type": kind,
+                                  "param_count": len(names), "param_index": names.index(name)})
 
     # Packets out.
 

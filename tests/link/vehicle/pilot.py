@@ -9,11 +9,14 @@ from airframe import Goal
 from auto import Auto
 from constants import MISSION, Command, Frame, MissionResult, Severity
 from copter import Copter
-from flavours import AUTO, GUIDED, HOLD, LAND, MANUAL, RTL, TAKEOFF
+from flavours import AUTO, GUIDED, HOLD, LAND, MANUAL, POSITION, RTL, TAKEOFF
 from guided import Guided
 from plane import Plane
 
 IDLE = Goal("idle")
+SINK = 0.9  # m/s, of PX4's copter in POSCTL without a radio
+# COM_OBL_RC_ACT; others of its values are not modelled.
+SETPOINT_LOSS = {0: POSITION, 3: RTL, 4: LAND, 5: HOLD}
 
 
 class Pilot:
@@ -21,7 +24,7 @@ class Pilot:
         self.flavour, self.kind, self.node = flavour, options.type, node
         self.home = geodesy.Position(*options.home)
         self.ground = self.home.alt  # level everywhere, wherever home is moved
-        self.parameters = flavours.parameters(self.kind)
+        self.parameters = {**flavours.parameters(flavour, self.kind), **options.parameters}
         airframe = Copter if self.kind == "copter" else Plane
         self.body = airframe(self.home, math.radians(options.heading), options.wind_vector(),
                              self.parameters)
@@ -198,6 +201,8 @@ class Pilot:
             return self.go_home()
         if self.mode == LAND:
             return Goal("land", self.hold.target)
+        if self.mode == POSITION:
+            return self.without_a_radio()
         return self.hold or IDLE
 
     def auto_goal(self, dt):
@@ -266,9 +271,18 @@ class Pilot:
         elif self.kind == "copter" and self.landed_for > self.parameters["DISARM_DELAY"] > 0:
             self.disarm()
 
-    def failsafe(self, text):
-        self.text(Severity.CRITICAL, text)
-        self.set_mode(HOLD, "failsafe")
+    def without_a_radio(self):
+        """POSCTL with sticks that nobody holds: a copter sinks, a plane flies straight on."""
+        if self.kind == "copter":
+            return Goal("velocity", velocity=(0.0, 0.0, -SINK))
+        yaw = self.body.course()
+        ahead = geodesy.offset(self.body.position, 1e4 * math.cos(yaw), 1e4 * math.sin(yaw), 0.0)
+        return Goal("leg", ahead.at(self.hold.target.alt))
+
+    def lose_set_points(self):
+        mode = SETPOINT_LOSS[self.parameters["COM_OBL_RC_ACT"]]
+        self.text(Severity.CRITICAL, f"Failsafe: no set-points, {mode}")
+        self.set_mode(mode, "failsafe")
 
     def reboot(self):
         """In flight the restarted autopilot holds where it is, armed as it was."""

@@ -6,7 +6,7 @@ import unittest
 
 import geodesy
 from constants import Command, Frame, Result
-from flavours import AUTO, GUIDED, HOLD, RTL
+from flavours import AUTO, GUIDED, HOLD, POSITION, RTL
 from flight_case import (HOME_ITEM, ORIGIN, POSITION_ONLY, VELOCITY_ONLY, Flight, at, place,
                          takeoff)
 from station import HOME, item
@@ -119,8 +119,8 @@ class SetPoints(Flight):
         self.assertLess(geodesy.distance(self.pilot.body.position, target), 0.5)
 
     def test_offboard_needs_its_stream(self):
-        """PX4 refuses OFFBOARD without set-points, and holds 0.5 s after the last one."""
-        self.hover("--autopilot px4")
+        """PX4 refuses OFFBOARD without set-points, and leaves it 1 s after the last one."""
+        self.hover("--autopilot px4 --parameter COM_OBL_RC_ACT=5")
         self.assertEqual(self.station.set_mode(GUIDED), Result.FAILED)
         for i in range(30):
             self.send_velocity(0.0, 4.0)
@@ -129,10 +129,23 @@ class SetPoints(Flight):
             self.station.run(0.1)
         self.assertEqual(self.pilot.mode, GUIDED)
         self.assertAlmostEqual(self.pilot.body.velocity[1], 4.0, delta=0.2)
-        self.station.run(0.6)
+        self.station.run(1.1)
         self.assertEqual(self.pilot.mode, HOLD)
         self.station.run(5.0)
         self.assertLess(self.speed(), 0.1)
+
+    def test_offboard_ends_in_a_mode_that_needs_a_radio(self):
+        """By default, as PX4's own simulation does: a copter sinks."""
+        self.hover("--autopilot px4", 40.0)
+        for _ in range(10):
+            self.send_velocity(0.0, 4.0)
+            self.station.run(0.1)
+        self.assertEqual(self.station.set_mode(GUIDED), 0)
+        self.station.run(1.2)
+        self.assertEqual(self.pilot.mode, POSITION)
+        height = self.height()
+        self.station.run(10.0)
+        self.assertAlmostEqual(height - self.height(), 9.0, delta=1.5)
 
     def test_target_is_reported(self):
         self.hover()

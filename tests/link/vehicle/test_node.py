@@ -127,6 +127,15 @@ class Services(unittest.TestCase):
                      param_id="WPNAV_SPEED", param_index=-1)
         self.assertEqual(station.wait(("PARAM_VALUE",), 1).param_value, 4.0)
 
+    def test_integers_are_bytes_to_px4_and_numbers_to_ardupilot(self):
+        for autopilot, name, kind, coded in (("px4", "COM_OBL_RC_ACT", 6, 7.006492321624085e-45),
+                                             ("ardupilot", "FS_GCS_ENABLE", 2, 5.0)):
+            station = Station(make_node(f"--autopilot {autopilot} --parameter {name}=5"))
+            station.send("PARAM_REQUEST_READ", target_system=1, target_component=1,
+                         param_id=name, param_index=-1)
+            value = station.wait(("PARAM_VALUE",), 1)
+            self.assertEqual((value.param_value, value.param_type), (coded, kind))
+
     def test_ping_and_timesync(self):
         self.station.run(2)
         self.station.send("PING", time_usec=123, seq=7)

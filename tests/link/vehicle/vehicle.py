@@ -55,6 +55,11 @@ def address(text):
     return "127.0.0.1", int(port)
 
 
+def parameter(text):
+    name, _, value = text.partition("=")
+    return name, int(value) if value.lstrip("-").isdigit() else float(value)
+
+
 class Options(argparse.Namespace):
     def flavour(self):
         flavour = flavours.FLAVOURS[self.autopilot]
@@ -92,6 +97,8 @@ def parser():
     add("--key", type=key_of_file, metavar="FILE",
         help="signs everything and accepts only what is signed")
     add("--ready-after", type=float, default=0.0, metavar="S", help="until then it does not arm")
+    add("--parameter", type=parameter, action="append", default=[], metavar="NAME=VALUE",
+        help="a whole number is of an integer type")
     add("--terrain", action="store_true", help="asks for terrain")
     add("--terrain-spacing", type=int, default=100, metavar="M")
     add("--seed", type=int, default=0)
@@ -105,6 +112,7 @@ def parser():
 def options_of(arguments):
     known = parser()
     options = known.parse_args(arguments, Options())
+    options.parameters = dict(options.parameter)
     try:
         script = options.faults
         options.faults = faults.of_text(script, options.seed) if script else None
