@@ -13,6 +13,7 @@ constexpr int kMaxAsks = 10;
 constexpr double kSamePlace = 1e-3;  ///< metres
 constexpr double kLookahead = 2;     ///< seconds, of a multirotor along the route
 constexpr double kCircleAhead = 4;   ///< seconds to the circle that ends an aeroplane's set-point
+constexpr double kLevelling = 1;     ///< m/s, at most, back to a height that is to be kept
 constexpr double kBetween = 0.5;     ///< seconds between set-points that are commands of their own
 }  // namespace
 
@@ -50,6 +51,19 @@ SetPoint LinkedVehicle::along(const RouteAhead& route, const State& now) const {
   const Vec3 target = route.path.at(route.path.first_beyond(ahead, now.position, route.progress));
   const Vec3 way = target - now.position;
   return toward(now.position, way / std::max(way.norm() / speed, 1.0), target.z());
+}
+
+Vec3 LinkedVehicle::commanded_velocity(const RouteAhead& route, const State& from,
+                                       const State& command) {
+  const double dt = command.time_s - from.time_s;
+  Vec3 velocity = (command.position - from.position) / dt;
+  if (velocity.z() != 0) {
+    height_ = command.position.z();
+  } else {
+    height_ = height_.value_or(route.path.at(route.progress).z());
+    velocity.z() = std::clamp((*height_ - from.position.z()) / dt, -kLevelling, kLevelling);
+  }
+  return velocity;
 }
 
 SetPoint LinkedVehicle::toward(const Vec3& from, const Vec3& velocity, double height) const {

@@ -236,6 +236,7 @@ void LinkedVehicle::await_words() {
 
 FlownTo LinkedVehicle::follow(RouteAhead& route, const State& from, double duration,
                               const Report& report) {
+  height_.reset();
   State last = from;
   while (last.time_s < from.time_s + duration - kLengthTolerance) {
     steer(route, last);
@@ -258,8 +259,8 @@ FlownTo LinkedVehicle::follow(RouteAhead& route, const State& from, double durat
 
 FlownTo LinkedVehicle::go(RouteAhead& route, const State& from, const State& command,
                           const Report& report) {
-  const Vec3 velocity = (command.position - from.position) / (command.time_s - from.time_s);
-  const SetPoint wanted = toward(from.position, velocity, command.position.z());
+  const Vec3 velocity = commanded_velocity(route, from, command);
+  const SetPoint wanted = toward(from.position, velocity, *height_);
   take_command();
   stream(wanted, from);
   const auto latency = VehicleFeed::Clock::now() - feed_.last_position();
@@ -304,15 +305,20 @@ void LinkedVehicle::expect_in_reach() {
   if (feed_.has_restarted()) {
     give_up("the vehicle has restarted");
   }
-  if (!is_flying_ || (feed_.is_armed() && is_in_own_mode())) {
+  if (is_flying_ && !feed_.is_armed()) {
+    give_up("the vehicle has disarmed in flight" + feed_.quoted_text());
+  }
+  if (!feed_.has_other_mission() && (!is_flying_ || is_in_own_mode())) {
     strange_since_.reset();
-  } else if (time_now() > strange_since_.value_or(time_now()) + kStrange) {
-    give_up(feed_.is_armed() ? "the vehicle is in the mode " + feed_.mode_name() +
-                                   ", which this flight has not asked for: it is left alone" +
-                                   feed_.quoted_text()
-                             : "the vehicle has disarmed" + feed_.quoted_text());
-  } else {
+  } else if (time_now() <= strange_since_.value_or(time_now()) + kStrange) {
     strange_since_ = strange_since_.value_or(time_now());
+  } else if (!feed_.has_other_mission()) {
+    give_up("the vehicle is in the mode " + feed_.mode_name() +
+            ", which this flight has not asked for: it is left alone" + feed_.quoted_text());
+  } else if (commands_) {
+    give_up_in_hold("another program has replaced the vehicle's mission: it is told to hold");
+  } else {
+    give_up("another program has replaced the vehicle's mission: it is left alone");
   }
 }
 

@@ -81,6 +81,9 @@ class LinkedVehicle final : public host::FlownVehicle {
   /// Commands along the route where it is not the mission's, and hands back where it is.
   void steer(const host::RouteAhead& route, const State& now);
   SetPoint along(const host::RouteAhead& route, const State& now) const;
+  /// Of a pilot that commands no change of height, to the last one commanded, at first the route's:
+  /// the vehicle would drift from where it is reported.
+  Vec3 commanded_velocity(const host::RouteAhead& route, const State& from, const State& command);
   SetPoint toward(const Vec3& from, const Vec3& velocity, double height) const;
   void take_command();
   void hand_back(int item);
@@ -105,6 +108,7 @@ class LinkedVehicle final : public host::FlownVehicle {
   bool hands_back_ = false;
   Time ask_at_{0};
   int asks_ = 0;
+  std::optional<double> height_;            ///< metres, of the last command of the pilot
   double streamed_s_ = 0;                   ///< time of the last set-point
   std::int64_t count_ = 0;                  ///< commands of the pilot
   std::vector<std::int64_t> latencies_us_;  ///< from the arrival of a position to its command

@@ -24,6 +24,8 @@ void VehicleFeed::take(const Message& message) {
     mode_ = mode_of(*heartbeat);
   } else if (const auto* current = std::get_if<MissionCurrent>(&message)) {
     current_item_ = current->seq;
+    mission_ = {current->mission_id, current->total};
+    first_mission_ = first_mission_.value_or(*mission_);
   } else if (const auto* reached = std::get_if<MissionItemReached>(&message)) {
     reached_item_ = reached->seq;
   } else if (const auto* ack = std::get_if<CommandAck>(&message)) {

@@ -34,6 +34,8 @@ class VehicleFeed {
   /// Number of the mission's item, by the last report.
   std::optional<int> current_item() const { return current_item_; }
   std::optional<int> reached_item() const { return reached_item_; }
+  /// True once it reports another mission than at first, by number (PX4) or length.
+  bool has_other_mission() const { return mission_ != first_mission_; }
   /// Arrival of the last position.
   Clock::time_point last_position() const { return last_position_; }
   bool has_position() const { return boot_ms_.has_value(); }
@@ -59,6 +61,9 @@ class VehicleFeed {
   FlightMode mode_ = FlightMode::other;
   std::optional<int> current_item_;
   std::optional<int> reached_item_;
+  using MissionKey = std::pair<std::uint32_t, std::uint16_t>;
+  std::optional<MissionKey> first_mission_;
+  std::optional<MissionKey> mission_;
   std::map<std::uint16_t, int> results_;  ///< by command
   StatusText texts_;
   std::string text_;

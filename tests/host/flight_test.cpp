@@ -114,6 +114,11 @@ TEST(Flight, RejectionSaysWhenAndWhere) {
   EXPECT_EQ(steep.message.find("reached the goal, but at 300.0 s, near (11000, 15000, 500) m: "),
             0U)
       << steep.message;
+  // Of several the worst.
+  scene.setup.route = {{2000, 15000, 500},  {11000, 15000, 500}, {12000, 15000, 900},
+                       {20000, 15000, 900}, {20500, 15000, 500}, {28000, 15000, 500}};
+  const std::string worst = fly(scene.setup).message;
+  EXPECT_NE(worst.find(", near (20000, 15000, 900) m: "), std::string::npos) << worst;
   // No place causes a length.
   scene.setup.request.limits.max_climb = kPi / 2;
   scene.setup.request.limits.max_route_length = 26000;

@@ -178,6 +178,49 @@ class Fly(FlownCase):
                 self.assertIn("--accept-failsafe commands it all the same", err)
                 self.expect_nothing_uploaded(vehicle)
 
+    def test_a_route_is_not_flown_by_another_kind(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot")
+        code, out, err = self.altiplan("fly", self.planned("plane", pilot="route"), "--link",
+                                       vehicle.address, "--arm")
+        self.assertEqual(code, 1, out + err)
+        self.assertIn("the route is an aeroplane's, and the vehicle is a quadrotor", err)
+        self.expect_nothing_uploaded(vehicle)
+
+    def test_a_mission_that_another_program_replaces(self):
+        other = os.path.join(self.folder, "other.json")
+        os.rename(self.planned(pilot="route"), other)
+        result = self.planned(pop_up=True)
+        for autopilot in ("px4", "ardupilot"):
+            with self.subTest(autopilot=autopilot):
+                vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
+                                       speedup=3)
+                process = self.flying(result, vehicle, *TAKEOFF, "--arm", "--command")
+                self.assertTrue(vehicle.wait(lambda: vehicle.log("reached"), 60))
+                _, out, err = self.altiplan("upload", other, "--to", vehicle.address,
+                                            "--takeoff", "--land", "--home-altitude", "500")
+                self.assertIn("the vehicle is armed", out + err)
+                out, err = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 1, out + err)
+                self.assertIn("another program has replaced the vehicle's mission", out)
+
+    def test_the_height_is_kept_under_command(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--drift", "0.5")
+        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm",
+                                     "--command")
+        self.expect_flown(code, flight, out)
+        heights = [entry["alt"] for entry in vehicle.log("position") if entry["mode"] == "GUIDED"
+                   and entry["alt"] > 525]
+        self.assertGreater(len(heights), 50)
+        self.assertLess(max(heights), 532)
+
+    def test_motors_that_stop_in_flight(self):
+        vehicle = self.vehicle("--autopilot", "px4", *HOLDING["px4"], "--faults",
+                               '[{"fault": "disarm", "from": 12}]', speedup=5)
+        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm",
+                                     "--command")
+        self.assertEqual(code, 1, out)
+        self.assertIn("the vehicle has disarmed in flight", flight["message"])
+
     def test_terrain_is_answered(self):
         # The world has no ground: nothing is answered, and nothing is harmed.
         vehicle = self.vehicle("--autopilot", "ardupilot", "--terrain")

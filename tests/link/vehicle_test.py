@@ -105,6 +105,14 @@ class Vehicle(unittest.TestCase):
         for line in ("mission: 2 items uploaded, read back equal", "fence: 1 items uploaded, read back equal",
                      "rally points: 1 items uploaded, read back equal"):
             self.assertIn(line, out)
+        # A plan without zones over that fence.
+        for options, line in (((), "fence: the vehicle keeps one of 1 items"),
+                              (("--clear-fence",), "fence: 0 items uploaded, read back equal")):
+            code, out, err = altiplan("upload", self.result, "--to", address, *options)
+            self.assertEqual(code, 0, out + err)
+            self.assertIn(line, out)
+        code, out, err = altiplan("upload", self.result, "--to", address)
+        self.assertEqual((code, "fence" in out), (0, False), out + err)
 
     def test_ardupilot_keeps_a_take_off_and_a_landing(self):
         for kind in ("copter", "plane"):

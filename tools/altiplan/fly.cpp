@@ -11,6 +11,7 @@
 #include "host/run/pipeline.hpp"
 #include "link/failsafe.hpp"
 #include "link/linked_vehicle.hpp"
+#include "link/vehicle_words.hpp"
 #include "plan_upload.hpp"
 #include "route_export.hpp"
 
@@ -21,7 +22,7 @@ struct FlyArguments {
   RouteExport route;
   LinkOptions link;
   std::optional<std::string> out;
-  bool no_fence = false;
+  FenceOptions fence;
   bool arm = false;
   bool command = false;
   bool accept_failsafe = false;
@@ -34,6 +35,17 @@ struct FlyArguments {
 };
 
 void tell_user(const std::string& message) { std::cerr << "altiplan: " + message + "\n"; }
+
+/// False, and said, for an aeroplane's route on a multirotor, or the reverse.
+bool is_of_kind(const link::Vehicle& vehicle, bool is_wing) {
+  if (link::is_fixed_wing(vehicle.heartbeat) == is_wing) {
+    return true;
+  }
+  tell_user(std::string("the route is ") + (is_wing ? "an aeroplane's" : "a multirotor's") +
+      ", and the vehicle is a " + link::type_in_words(vehicle.heartbeat) +
+      ": nothing was uploaded");
+  return false;
+}
 
 /// Says what the vehicle does when everything that commands it dies; false where that is neither a
 /// hold nor a return, and not accepted.
@@ -172,8 +184,9 @@ int fly_result(const FlyArguments& arguments) {
   }
   return connected(arguments.link, [&](Connection& connection) {
     const bool is_ready =
+        is_of_kind(connection.vehicle, source->mission.request.vehicle.wing.has_value()) &&
         (!arguments.command || accepts_failsafe(connection, arguments.accept_failsafe)) &&
-        upload_plan(connection, plan, !arguments.no_fence);
+        upload_plan(connection, plan, arguments.fence);
     return is_ready
                ? fly(arguments, *source, *written, plan, connection)
                : kNoRoute;
@@ -194,7 +207,7 @@ void add_fly(App& app, Action& action) {
       fly_result, prepare);
   add_link_options(command, "--link", arguments.link);
   add_route_export(command, arguments.route, false);
-  add_no_fence(command, arguments.no_fence);
+  add_fence_options(command, arguments.fence);
   command.add_flag("--arm", arguments.arm, "arm the vehicle and start its mission");
   command.add_flag("--command", arguments.command,
                    "let the pipeline's local planner command the vehicle off its mission, and "

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "link/plan_transfer.hpp"
+#include "link/vehicle_words.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -48,11 +49,31 @@ bool accepts_mission(Connection& connection) {
   return !stored.is_refused && !(stored.begins_elsewhere && stored.current);
 }
 
-bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence) {
+/// Prints whether the vehicle still has a fence of an older plan.
+void tell_old_fence(Connection& connection) {
+  host::Plan held;
+  try {
+    link::download(connection.link, connection.vehicle, link::PlanType::fence, held,
+                   connection.stop);
+  } catch (const link::LinkError& error) {
+    std::cout << "fence: whether the vehicle has one is not known: " << error.what() << '\n';
+  }
+  if (!held.fence.empty()) {
+    std::cout << "fence: the vehicle keeps one of " << held.fence.size()
+              << " items, which this plan has not: --clear-fence removes it\n";
+  }
+}
+
+bool upload_plan(Connection& connection, const host::Plan& plan, const FenceOptions& fence) {
+  if ((connection.vehicle.heartbeat.base_mode & link::kArmedFlag) != 0) {
+    warn("the vehicle is armed: if it flies a mission, that is replaced under it");
+  }
   bool is_equal = upload(connection, plan, link::PlanType::mission, plan.items.size()) &&
                   accepts_mission(connection);
-  if (!plan.fence.empty() && with_fence) {
+  if (!fence.leave && (!plan.fence.empty() || fence.clear)) {
     is_equal = upload(connection, plan, link::PlanType::fence, plan.fence.size()) && is_equal;
+  } else if (!fence.leave) {
+    tell_old_fence(connection);
   }
   if (!plan.rally.empty()) {
     is_equal = upload(connection, plan, link::PlanType::rally, plan.rally.size()) && is_equal;
@@ -60,8 +81,13 @@ bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence
   return is_equal;
 }
 
-void add_no_fence(App& command, bool& no_fence) {
-  command.add_flag("--no-fence", no_fence,
-                   "leave the vehicle's fence as it is, whatever zones the scenario has");
+void add_fence_options(App& command, FenceOptions& fence) {
+  auto* leave = command.add_flag("--no-fence", fence.leave,
+                                 "leave the vehicle's fence as it is, whatever zones the scenario "
+                                 "has");
+  command
+      .add_flag("--clear-fence", fence.clear,
+                "remove the vehicle's fence where the scenario has no zones")
+      ->excludes(leave);
 }
 }  // namespace altiplan::cli

@@ -9,9 +9,15 @@ namespace altiplan::cli {
 
 /// The plan of a route as written; warns where MAVLink carries fewer decimals than it needs.
 host::Plan plan_to_upload(const host::Exported& written);
+/// What becomes of the vehicle's fence.
+struct FenceOptions {
+  bool leave = false;
+  bool clear = false;  ///< where the plan has no zones
+};
+
 /// Uploads the mission, the fence and the rally points, reads them back and prints what the vehicle
-/// changed. True if it holds what was sent.
-bool upload_plan(Connection& connection, const host::Plan& plan, bool with_fence);
-/// Adds --no-fence.
-void add_no_fence(App& command, bool& no_fence);
+/// changed, and a fence that it keeps. True if it holds what was sent.
+bool upload_plan(Connection& connection, const host::Plan& plan, const FenceOptions& fence);
+/// Adds --no-fence and --clear-fence.
+void add_fence_options(App& command, FenceOptions& fence);
 }  // namespace altiplan::cli

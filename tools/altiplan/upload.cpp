@@ -10,7 +10,7 @@ struct UploadArguments {
   RouteExport route;
   MissionOptions mission;
   LinkOptions link;
-  bool no_fence = false;
+  FenceOptions fence;
 };
 
 /// A mission's own items, if it passes; a result's route as it is written.
@@ -32,7 +32,7 @@ int upload_result(const UploadArguments& arguments) {
     return kNoRoute;
   }
   return connected(arguments.link, [&](Connection& connection) {
-    return upload_plan(connection, *plan, !arguments.no_fence) ? kDone : kNoRoute;
+    return upload_plan(connection, *plan, arguments.fence) ? kDone : kNoRoute;
   });
 }
 }  // namespace
@@ -53,7 +53,7 @@ void add_upload(App& app, Action& action) {
   add_link_options(command, "--to", arguments.link);
   add_route_export(command, arguments.route, true);
   add_mission_options(command, arguments.mission);
-  add_no_fence(command, arguments.no_fence);
+  add_fence_options(command, arguments.fence);
   set_example(command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
 }
 }  // namespace altiplan::cli

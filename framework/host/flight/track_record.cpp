@@ -4,8 +4,26 @@
 #include "host/flight/track_judge.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace altiplan::host {
+namespace {
+
+/// The farthest from its limit, of the constraint that the first is of: others have other units.
+const Violation& worst_of_first_kind(const std::vector<Violation>& violations) {
+  constexpr double kWorse = 1 + 1e-6;  // legs of one slope differ by rounding
+  const auto excess = [](const Violation& violation) {
+    return std::abs(violation.value - violation.limit);
+  };
+  const Violation* worst = &violations.front();
+  for (const Violation& violation : violations) {
+    if (violation.constraint == worst->constraint && excess(violation) > kWorse * excess(*worst)) {
+      worst = &violation;
+    }
+  }
+  return *worst;
+}
+}  // namespace
 
 void Flight::fly_leg(const State& next) {
   const Vec3 a = state_.position;
@@ -67,12 +85,12 @@ void Flight::finish() {
 }
 
 std::string Flight::attribute_to() const {
-  const Violation& first = result_.check.violations.front();
-  if (first.constraint == "route_length") {
-    return first.message;  // of the whole track
+  const Violation& worst = worst_of_first_kind(result_.check.violations);
+  if (worst.constraint == "route_length") {
+    return worst.message;  // of the whole track
   }
-  const auto& [time_s, at] = result_.track[std::min(first.at, result_.track.size() - 1)];
-  return "at " + with_decimals(time_s, 1) + " s, near " + place(at) + " m: " + first.message;
+  const auto& [time_s, at] = result_.track[std::min(worst.at, result_.track.size() - 1)];
+  return "at " + with_decimals(time_s, 1) + " s, near " + place(at) + " m: " + worst.message;
 }
 
 void Flight::judge_whole() {

@@ -6,13 +6,15 @@
                nak: MISSION_ACK with `result` in place of the answer; ends an upload
                reboot: sequence numbers and transfers are lost, plans only if `loses_plans`;
                silent for `seconds` (2)
+               disarm: its motors stop
                change: of stored items: `round_altitude` (m), `shift_lat` (degrees),
                `drop_command`, `refuse_frame`; of a mission that was acknowledged: `infeasible`,
                the reason for which it is declared invalid
   direction    in (to the vehicle) | out | both (of packets: both, else in)
   message      a name or a list of names; none: any
   kind         only messages of this mission_type; `seq`: only of this item
-  from, until  s since the script began; a silence or reboot without `message` happens at `from`
+  from, until  s since the script began; a silence, reboot or disarm without `message` happens at
+               `from`
   skip, count  the first `skip` matches pass, then at most `count` are met
   probability  of a match to be met (1)
   seconds      of a delay: a number, or [least, greatest]
@@ -40,7 +42,7 @@ class Rule:
         if unknown:
             raise ValueError(f"a fault has the unknown key {sorted(unknown)[0]!r}")
         self.fault = declared["fault"]
-        if self.fault not in PACKET_FAULTS + ("silence", "nak", "reboot", "change"):
+        if self.fault not in PACKET_FAULTS + ("silence", "nak", "reboot", "disarm", "change"):
             raise ValueError(f"there is no fault {self.fault!r}")
         self.declared, self.rng = declared, rng
         both = "both" if self.fault in PACKET_FAULTS else "in"
@@ -55,7 +57,7 @@ class Rule:
             self.result = MissionResult[declared.get("result", "ERROR")]
 
     def timed(self):
-        return self.fault in ("silence", "reboot") and not self.names
+        return self.fault in ("silence", "reboot", "disarm") and not self.names
 
     def fires(self, now, direction, message):
         """`message` is a codec.Received, or None for bytes without one."""
@@ -99,6 +101,7 @@ class Faults:
         self.order = 0
         self.held = {"in": None, "out": None}
         self.reboots = []  # (seconds, loses_plans) to be done
+        self.stops_motors = False  # is to be done
         self.now = 0.0  # of the last packet or step
         self.met = []  # names of faults since last asked, for the log
 
@@ -114,7 +117,7 @@ class Faults:
             if passing and rule.fires(now, direction, message):
                 self.note(rule, direction, message)
                 passing = getattr(self, rule.fault)(rule, now, direction, passing, address)
-        for rule in self.of_fault("silence", "reboot"):
+        for rule in self.of_fault("silence", "reboot", "disarm"):
             if not rule.timed() and rule.fires(now, direction, message):
                 self.note(rule, direction, message)
                 self.stop(rule, now)
@@ -161,7 +164,9 @@ class Faults:
         heapq.heappush(self.waiting, (until, self.order, direction, packet, address))
 
     def stop(self, rule, now):
-        if rule.fault == "reboot":
+        if rule.fault == "disarm":
+            self.stops_motors = True
+        elif rule.fault == "reboot":
             self.reboots.append((rule.seconds(2.0), rule.declared.get("loses_plans", False)))
         else:
             self.silent_until = max(self.silent_until, now + rule.seconds(math.inf))

@@ -244,6 +244,9 @@ class Node:
         for met in self.faults.met:
             self.log("fault", **met)
         self.faults.met = []
+        if self.faults.stops_motors:
+            self.faults.stops_motors = False
+            self.pilot.disarm(force=True)
         reboots, self.faults.reboots = self.faults.reboots, []
         for seconds, loses_plans in reboots:
             self.reboot(seconds, loses_plans)

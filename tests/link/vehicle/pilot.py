@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The autopilot: arming, modes, what each mode gives the airframe as its goal, and failsafes."""
+import dataclasses
 import math
 
 import flavours
@@ -28,7 +29,7 @@ class Pilot:
         airframe = Copter if self.kind == "copter" else Plane
         self.body = airframe(self.home, math.radians(options.heading), options.wind_vector(),
                              self.parameters)
-        self.ready_after = options.ready_after
+        self.ready_after, self.drift = options.ready_after, options.drift
         self.time = 0.0  # of flight simulation, s since boot
         self.booted_at = 0.0
         self.mode, self.armed, self.started = MANUAL, False, False
@@ -192,7 +193,11 @@ class Pilot:
         if self.mode == AUTO:
             return self.auto_goal(dt)
         if self.mode == GUIDED:
-            return self.guided.goal()
+            goal = self.guided.goal()
+            if self.drift and goal.kind == "velocity":
+                north, east, up = goal.velocity
+                goal = dataclasses.replace(goal, velocity=(north, east, up + self.drift))
+            return goal
         if self.mode == TAKEOFF:
             return self.takeoff_goal()
         if self.body.on_ground:

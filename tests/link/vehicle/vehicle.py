@@ -99,6 +99,8 @@ def parser():
     add("--ready-after", type=float, default=0.0, metavar="S", help="until then it does not arm")
     add("--parameter", type=parameter, action="append", default=[], metavar="NAME=VALUE",
         help="a whole number is of an integer type")
+    add("--drift", type=float, default=0.0, metavar="M/S",
+        help="of a copter's height while velocities are commanded")
     add("--terrain", action="store_true", help="asks for terrain")
     add("--terrain-spacing", type=int, default=100, metavar="M")
     add("--seed", type=int, default=0)
