@@ -211,10 +211,10 @@ void LinkedVehicle::expect(const CommandLong& command, const std::string& what,
 void LinkedVehicle::watch_start() {
   constexpr Time kTellAgain{30'000};
   if (flight_.arm && feed_.mode() == FlightMode::mission && feed_.is_armed()) {
-    strange_since_.reset();
+    not_started_since_.reset();
   } else if (flight_.arm) {
-    strange_since_ = strange_since_.value_or(time_now());
-    if (time_now() > *strange_since_ + kStrange) {
+    not_started_since_ = not_started_since_.value_or(time_now());
+    if (time_now() > *not_started_since_ + kStrange) {
       give_up("the vehicle has left its mission before the first item: " +
               (feed_.is_armed() ? "it is in the mode " + feed_.mode_name() : "it has disarmed") +
               feed_.quoted_text());

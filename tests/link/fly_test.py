@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """fly_test.py PROGRAM SOURCES: altiplan fly with the vehicle of tests/link/vehicle."""
+import json
 import os
 import signal
 import sys
@@ -92,6 +93,20 @@ class Fly(FlownCase):
         self.assertEqual(code, 1, out + err)
         self.assertIn("declares it invalid (\"Mission rejected: Landing pattern required\")", out + err)
         self.assertEqual(vehicle.log("armed"), [])
+
+    def test_a_start_that_comes_to_nothing(self):
+        """Before the first item: the motors stop, or a pilot switches the mode."""
+        result = self.planned()
+        for autopilot in ("ardupilot", "px4"):
+            for fault, words in (({"fault": "disarm"}, "it has disarmed"),
+                                 ({"fault": "switch"}, "it is in the mode ")):
+                with self.subTest(autopilot=autopilot, fault=fault):
+                    script = json.dumps([{**fault, "message": "COMMAND_LONG", "command": 178}])
+                    vehicle = self.vehicle("--autopilot", autopilot, "--faults", script, speedup=1)
+                    code, flight, out = self.fly(result, vehicle, *TAKEOFF, "--arm")
+                    self.assertEqual(code, 1, out)
+                    self.assertIn("the vehicle has left its mission before the first item: " +
+                                  words, flight["message"])
 
     def test_without_command_a_danger_is_only_noted(self):
         vehicle = self.vehicle("--autopilot", "ardupilot")

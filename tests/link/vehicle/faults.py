@@ -7,14 +7,16 @@
                reboot: sequence numbers and transfers are lost, plans only if `loses_plans`;
                silent for `seconds` (2)
                disarm: its motors stop
+               switch: its pilot changes to `mode` (HOLD)
                change: of stored items: `round_altitude` (m), `shift_lat` (degrees),
                `drop_command`, `refuse_frame`; of a mission that was acknowledged: `infeasible`,
                the reason for which it is declared invalid
   direction    in (to the vehicle) | out | both (of packets: both, else in)
   message      a name or a list of names; none: any
-  kind         only messages of this mission_type; `seq`: only of this item
-  from, until  s since the script began; a silence, reboot or disarm without `message` happens at
-               `from`
+  kind         only messages of this mission_type; `seq`: only of this item, `command`: only of
+               this MAV_CMD
+  from, until  s since the script began; a silence, reboot, disarm or switch without `message`
+               happens at `from`
   skip, count  the first `skip` matches pass, then at most `count` are met
   probability  of a match to be met (1)
   seconds      of a delay: a number, or [least, greatest]
@@ -30,9 +32,11 @@ import codec
 from constants import MissionResult
 
 PACKET_FAULTS = ("lose", "double", "delay", "reorder", "damage")
-KEYS = {"fault", "direction", "message", "kind", "seq", "from", "until", "skip", "count",
+EVENTS = ("silence", "reboot", "disarm", "switch")
+FIELDS = {"kind": "mission_type", "seq": "seq", "command": "command"}
+KEYS = {"fault", "direction", "message", *FIELDS, "from", "until", "skip", "count",
         "probability", "seconds", "result", "loses_plans", "round_altitude", "shift_lat",
-        "drop_command", "refuse_frame", "infeasible"}
+        "drop_command", "refuse_frame", "infeasible", "mode"}
 HELD_AT_MOST = 0.5  # s, of a packet that waits to be overtaken
 
 
@@ -42,7 +46,7 @@ class Rule:
         if unknown:
             raise ValueError(f"a fault has the unknown key {sorted(unknown)[0]!r}")
         self.fault = declared["fault"]
-        if self.fault not in PACKET_FAULTS + ("silence", "nak", "reboot", "disarm", "change"):
+        if self.fault not in PACKET_FAULTS + EVENTS + ("nak", "change"):
             raise ValueError(f"there is no fault {self.fault!r}")
         self.declared, self.rng = declared, rng
         both = "both" if self.fault in PACKET_FAULTS else "in"
@@ -57,7 +61,7 @@ class Rule:
             self.result = MissionResult[declared.get("result", "ERROR")]
 
     def timed(self):
-        return self.fault in ("silence", "reboot", "disarm") and not self.names
+        return self.fault in EVENTS and not self.names
 
     def fires(self, now, direction, message):
         """`message` is a codec.Received, or None for bytes without one."""
@@ -74,12 +78,13 @@ class Rule:
         return True
 
     def matches(self, message):
-        if not (self.names or "kind" in self.declared or "seq" in self.declared):
+        wanted = {key: self.declared[key] for key in FIELDS if key in self.declared}
+        if not (self.names or wanted):
             return True
         fields = message.fields if message else {}
         return ((not self.names or (message is not None and message.name in self.names))
-                and self.declared.get("kind") in (None, fields.get("mission_type", 0))
-                and self.declared.get("seq") in (None, fields.get("seq")))
+                and all(fields.get(FIELDS[key], 0 if key == "kind" else None) == value
+                        for key, value in wanted.items()))
 
     def due(self, now):
         if not self.timed() or self.left <= 0 or now < self.begin:
@@ -102,6 +107,7 @@ class Faults:
         self.held = {"in": None, "out": None}
         self.reboots = []  # (seconds, loses_plans) to be done
         self.stops_motors = False  # is to be done
+        self.switch_to = None  # a mode: is to be done
         self.now = 0.0  # of the last packet or step
         self.met = []  # names of faults since last asked, for the log
 
@@ -117,7 +123,7 @@ class Faults:
             if passing and rule.fires(now, direction, message):
                 self.note(rule, direction, message)
                 passing = getattr(self, rule.fault)(rule, now, direction, passing, address)
-        for rule in self.of_fault("silence", "reboot", "disarm"):
+        for rule in self.of_fault(*EVENTS):
             if not rule.timed() and rule.fires(now, direction, message):
                 self.note(rule, direction, message)
                 self.stop(rule, now)
@@ -166,6 +172,8 @@ class Faults:
     def stop(self, rule, now):
         if rule.fault == "disarm":
             self.stops_motors = True
+        elif rule.fault == "switch":
+            self.switch_to = rule.declared.get("mode", "HOLD")
         elif rule.fault == "reboot":
             self.reboots.append((rule.seconds(2.0), rule.declared.get("loses_plans", False)))
         else:

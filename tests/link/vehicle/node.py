@@ -247,6 +247,9 @@ class Node:
         if self.faults.stops_motors:
             self.faults.stops_motors = False
             self.pilot.disarm(force=True)
+        switch, self.faults.switch_to = self.faults.switch_to, None
+        if switch:
+            self.pilot.set_mode(switch, "pilot")
         reboots, self.faults.reboots = self.faults.reboots, []
         for seconds, loses_plans in reboots:
             self.reboot(seconds, loses_plans)
