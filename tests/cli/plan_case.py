@@ -50,8 +50,8 @@ class PlanCase(unittest.TestCase):
         plan["mission"].update(keys, items=items)
         (self.folder / "mission.plan").write_text(json.dumps(plan))
 
-    def zones(self, name, ring, ceiling, datum="AMSL", schedule=None):
-        """A zone of ED-269 from the ground up."""
+    def zones(self, name, ring, ceiling, datum="AMSL", schedule=None, floor=None):
+        """A zone of ED-269 from the ground up, or from a floor above sea level."""
         times = {"startDateTime": "2022-01-01T00:00:00Z", "endDateTime": "2030-01-01T00:00:00Z",
                  "permanent": "NO"}
         if schedule:
@@ -59,7 +59,7 @@ class PlanCase(unittest.TestCase):
         feature = {"identifier": "Z", "country": "USA", "name": "Z", "type": "COMMON",
                    "restriction": "PROHIBITED", "reason": ["OTHER"], "zoneAuthority": [],
                    "applicability": [times], "geometry": [{
-                       "uomDimensions": "M", "lowerLimit": 0, "lowerVerticalReference": "AGL",
+                       "uomDimensions": "M", "lowerLimit": floor or 0, "lowerVerticalReference": "AGL" if floor is None else "AMSL",
                        "upperLimit": ceiling, "upperVerticalReference": datum,
                        "horizontalProjection": {"type": "Polygon", "coordinates": [ring]}}]}
         (self.folder / name).write_text(json.dumps({"title": "test", "features": [feature]}))

@@ -408,7 +408,7 @@ int check_plan(const PlanCheck& given, const host::Overrides& overrides) {
   try {
     return check(plan, scenario, overrides);
   } catch (const Error& error) {
-    const std::string message = about_file(error.what());
+    const std::string message = about_file(error);
     // What an earlier call wrote would be taken for this one's verdict.
     if (plan.junit) {
       host::write_file(*plan.junit, host::junit_of_error(plan.plan, message));

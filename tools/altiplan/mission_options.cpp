@@ -58,6 +58,10 @@ void add_autopilot_options(App& command, MissionOptions& mission) {
       .add_option("--runway DEGREES", mission.plan.gate.flight.runway_deg,
                   "heading of an aeroplane's take-off, clockwise from north")
       ->check(number_from(0, 360));
+  command
+      .add_option("--wind M/S", mission.plan.gate.flight.wind_mps,
+                  "strongest wind that an aeroplane is judged in, from anywhere (m/s, default 0)")
+      ->check(number_from(0, 100));
 }
 }  // namespace
 

@@ -133,13 +133,14 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
 }
 }  // namespace
 
-std::string about_file(const std::string& message) {
-  constexpr std::string_view kKey = ".file: ";
-  const std::size_t key = message.find(kKey);
-  const bool is_one = message.find('\n') == std::string::npos;
-  return is_one && message.starts_with(kWorld) && key != std::string::npos
-             ? message.substr(key + kKey.size())
-             : message;
+std::string about_file(const Error& error) {
+  const auto* of_file = dynamic_cast<const ConfigError*>(&error);
+  if (of_file == nullptr || of_file->problems().size() != 1) {
+    return error.what();
+  }
+  const Problem& problem = of_file->problems().front();
+  return problem.where.file == kWorld && problem.key.ends_with(".file") ? problem.message
+                                                                       : error.what();
 }
 
 std::vector<std::string> models_of(const PlanCheck& plan) {

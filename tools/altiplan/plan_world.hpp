@@ -17,5 +17,5 @@ host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission
                       const host::Overrides& overrides);
 
 /// A message about a file of that scenario, without its place in text that nobody has written.
-std::string about_file(const std::string& message);
+std::string about_file(const Error& error);
 }  // namespace altiplan::cli

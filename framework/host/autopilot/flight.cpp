@@ -185,7 +185,7 @@ void Flight::add_disc(const Destination& centre, double inner, double outer, dou
   const int rings = std::max(1, int(std::ceil((outer - inner) / kSpacing)));
   for (int ring = 0; ring <= rings; ++ring) {
     const double radius = inner + (outer - inner) * ring / rings;
-    const int sides = std::clamp(int(std::ceil(radius / 2)), 6, 48);
+    const int sides = std::clamp(int(std::ceil(radius / 2)), 6, radius > 500 ? 96 : 48);
     for (int side = 0; side < sides; ++side) {
       const auto corner = [&](int n) {
         // The chords' corners lie outside, so that the chords reach the circle.

@@ -29,6 +29,7 @@ class Flight {
       : mission_(mission), world_(world), parameters_(parameters) {}
 
   double parameter(std::string_view name) const { return parameters_(name); }
+  bool is_given(std::string_view name) const { return parameters_.is_given(name); }
   formats::Autopilot autopilot() const { return parameters_.autopilot(); }
   const World& world() const { return world_; }
 
@@ -56,7 +57,8 @@ class Flight {
   void add_disc(const Destination& centre, double inner, double outer, double low, double high);
 
   Eigen::Vector2d home{0, 0};
-  double home_ground = 0;   ///< where the world has no ground
+  double home_ground = 0;  ///< where the world has no ground
+  double wind_mps = 0;
   std::size_t before = 0;   ///< the command whose position was flown to last
   std::size_t repeats = 0;  ///< how often the present leg was flown before
 
@@ -102,7 +104,8 @@ class Hover {
   double lag_on_circle(const Eigen::Vector2d& centre, double radius, double v) const;
   double climb_rate() const;
   double sink_rate() const;
-  double reach() const;  ///< acceptance radius of the present place
+  double reach() const { return reach(acceptance_m); }  ///< of the present place
+  double reach(double acceptance) const;                ///< radius within which a place is reached
 
   /// The circle that is flown, and how far (metres) beyond its beginning it may be left.
   struct Left {
@@ -117,11 +120,13 @@ class Hover {
 
   Flight& flight_;
   std::optional<Vec3> previous_;  ///< where the last leg came from, if it leads on without a stop
+  bool is_off_track_ = false;     ///< the last leg was within the reach of its end
   std::optional<Left> left_;
 
  public:
-  double acceptance_m = 0;  ///< of the present place
-  bool stops = true;        ///< there
+  double acceptance_m = 0;       ///< of the present place
+  double next_acceptance_m = 0;  ///< of the next one
+  bool stops = true;             ///< there
   bool is_on_ground = false;
 };
 

@@ -16,14 +16,19 @@ using Weight = Remark::Weight;
 namespace {
 
 constexpr int kMaxSteps = 100'000;
-constexpr std::size_t kFlownAnew = 3;  // times that an aeroplane's leg is flown before it is known
-constexpr double kFarthest = 300'000;  // metres
+constexpr std::size_t kFlownAnew = 3;   // times that an aeroplane's leg is flown before it is known
+constexpr double kFarthest = 300'000;   // metres
+constexpr std::size_t kMaxJumps = 250;  // without a position between them
+constexpr const char* kJumpsAlone =
+    "jumps from jump to jump: where it flies when the autopilot gives up is not judged";
 }  // namespace
 
 FlownMission Walker::fly() {
   place_home();
+  remark_parameters();
   if (check_upload(commands_, flight_)) {
     walk();
+    check_fences();
   }
   mission_.parameters = parameters_.used();
   return std::move(mission_);
@@ -107,6 +112,7 @@ std::optional<Destination> Walker::next_destination(std::size_t n) const {
 
 void Walker::walk() {
   std::size_t n = 0;
+  std::size_t jumps = 0;  // since the last command of another kind
   bool ends = false;
   for (int steps = 0; n < commands_.size() && !ends; ++steps) {
     if (steps == kMaxSteps) {
@@ -119,14 +125,23 @@ void Walker::walk() {
     }
     if (commands_.is_jump(n)) {
       const std::optional<std::size_t> next = commands_.after_jump(n);
+      if (!next && jumps > 0) {
+        give_up(n, kJumpsAlone);
+        return;
+      }
       if (!next) {
         flight_.remark(Weight::note, "never_ends", n, "jumps back for ever: the flight has no end");
         flight_.take({0, kInfinity});
         return;
       }
+      if (++jumps > kMaxJumps) {
+        give_up(n, kJumpsAlone);
+        return;
+      }
       n = *next;
       continue;
     }
+    jumps = formats::flies_to_position(task_of(n)) ? 0 : jumps;
     ends = carry_out(n);
     ++n;
   }
@@ -136,6 +151,16 @@ void Walker::walk() {
   if (!ends && n == commands_.size() && has_flown_) {
     finish();
   }
+}
+
+bool Walker::give_up(std::size_t n, const std::string& why) {
+  flight_.remark(Weight::not_judged, "not_judged", n, why);
+  return true;
+}
+
+Walker::Way Walker::way_to(std::size_t n) const {
+  return {double(flight_.before), double(n),      home_.x(),      home_.y(), home_z_,
+          wing_speed_[0],         wing_speed_[1], hover_speed_[1]};
 }
 
 void Walker::note_unflown(std::size_t n) {
@@ -166,8 +191,7 @@ bool Walker::carry_out(std::size_t n) {
       change_speed(n);
       return false;
     case Task::set_home:
-      set_home(n);
-      return false;
+      return set_home(n);
     case Task::parachute:
       if (p[0] == 2) {
         flight_.remark(Weight::not_judged, "not_judged", n,
@@ -191,7 +215,7 @@ bool Walker::carry_out(std::size_t n) {
   if (is_too_far(n, destination(n).at)) {
     return true;
   }
-  Flown& flown = flown_[{flight_.before, n}];
+  Flown& flown = flown_[way_to(n)];
   flight_.repeats = flown.times++;
   if (is_winged_ && flight_.repeats > kFlownAnew) {  // nothing new is seen
     flight_.take(flown.time);

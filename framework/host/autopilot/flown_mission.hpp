@@ -72,6 +72,7 @@ struct FlownMission {
 struct FlightOptions {
   ParameterFile parameters;
   std::optional<double> runway_deg;  ///< of an aeroplane's take-off, clockwise from north
+  double wind_mps = 0;               ///< the strongest, from anywhere
 };
 
 /// Flies the mission's commands as that autopilot does (facts: ArduPilot 4.7, PX4 1.16). Heights

@@ -61,12 +61,12 @@ double Hover::sink_rate() const {
                                                    : "Q_WP_SPD_DN");
 }
 
-double Hover::reach() const {
+double Hover::reach(double acceptance) const {
   const formats::Autopilot autopilot = flight_.autopilot();
   if (!autopilot.is_px4()) {
     return autopilot.is_copter() ? flight_.parameter("WP_RADIUS_M") : 2;
   }
-  return acceptance_m > 0 ? acceptance_m : flight_.parameter("NAV_ACC_RAD");
+  return acceptance > 0 ? acceptance : flight_.parameter("NAV_ACC_RAD");
 }
 
 void Hover::climb(std::size_t command, const char* what, double low_m, double high_m) {
@@ -193,6 +193,14 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
   if (!stops && !to.above_ground) {
     cut_corner(to.at, to.low);
   }
+  // PX4 keeps within a metre of its line, unless it has reached a place without going there;
+  // ArduPilot within the radius of the blended corners.
+  const bool is_skipped = is_px4 && along < reach(next_acceptance_m);
+  const double beside =
+      !is_px4
+          ? std::min(reach(), 10.0)
+          : std::max({1.0, is_skipped ? reach(next_acceptance_m) : 0, is_off_track_ ? reach() : 0});
+  is_off_track_ = is_skipped;
   const Hover begun = *this;
   for (const Eigen::Vector2d& place : leave_circle()) {
     at = place;
@@ -206,9 +214,7 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
     if (to.above_ground) {
       follow_ground(to);
     } else {
-      // PX4 keeps within a metre of its line, ArduPilot within the radius of the blended corners.
-      flight_.add_leg(at_height(at, low), high, at_height(to.at, to.low), to.high,
-                      is_px4 ? 1.0 : std::min(reach(), 10.0));
+      flight_.add_leg(at_height(at, low), high, at_height(to.at, to.low), to.high, beside);
       low = to.low;
       high = to.high;
     }

@@ -18,6 +18,9 @@ bool Walker::fly_hover(std::size_t n) {
   const MissionCommand& command = commands_[n];
   const Task task = task_of(n);
   const bool is_copter = autopilot_.is_copter();
+  if (!command.has_position() && hover_->is_on_circle()) {
+    return give_up(n, "where on its circle it is when it is sent to its own place is not judged");
+  }
   if (task == Task::land || task == Task::vtol_land || task == Task::payload_place) {
     to.low = hover_->low;
     to.high = hover_->high;
@@ -72,20 +75,24 @@ bool Walker::fly_hover(std::size_t n) {
         "an arc above the ground, of a full turn or more, or of more than 100 km radius, "
         "is not judged");
   }
-  if (task == Task::loiter_to_altitude && is_px4()) {
+  // PX4 changes its height there; so does ArduPilot where the height is 0.
+  if (task == Task::loiter_to_altitude && (is_px4() || (is_copter && command.altitude_m == 0))) {
     Destination level = to;
     level.low = hover_->low;
     level.high = hover_->high;
+    level.above_ground.reset();
     arrive(n, level);
     hover_->climb(n, "the way to its height", to.low, to.high);
     return false;
   }
+  const double acceptance =
+      task == Task::waypoint && std::isfinite(command.params[1]) ? command.params[1] : 0;
+  hover_->next_acceptance_m = acceptance;
   arrive(n, to);
   const double hold = task == Task::waypoint || task == Task::loiter_time || task == Task::spline
                           ? command.params[0]
                           : 0;
-  hover_->acceptance_m =
-      task == Task::waypoint && std::isfinite(command.params[1]) ? command.params[1] : 0;
+  hover_->acceptance_m = acceptance;
   hover_->stops = hold > 0 || task != Task::waypoint;
   if (hold > 0) {
     flight_.take({hold, hold});
@@ -115,6 +122,7 @@ void Walker::fly_wing_to(std::size_t n, const char* what, const Destination& to,
   if (task_of(n) == Task::waypoint && !is_px4()) {
     leg.acceptance_m = command.params[1] > 0 ? command.params[1] : 0;
     leg.pass_by_m = command.params[2] > 0 ? command.params[2] : 0;
+    leg.turns_at_90 = n + 1 < commands_.size() && task_of(n + 1) == Task::delay;
   }
   wing_->go(n, what, leg);
 }
@@ -123,6 +131,9 @@ bool Walker::fly_wing(std::size_t n) {
   const Task task = task_of(n);
   Destination to = destination(n);
   const bool lands = task == Task::land || task == Task::vtol_land || task == Task::payload_place;
+  if (!commands_[n].has_position()) {
+    return give_up(n, "where on its way it is when it is sent to its own place is not judged");
+  }
   if (lands && autopilot_.airframe == Airframe::vtol) {
     to.low = wing_->low();
     to.high = wing_->high();

@@ -30,18 +30,33 @@ bool Walker::delay(std::size_t n) {
   return false;
 }
 
-void Walker::set_home(std::size_t n) {
+bool Walker::set_home(std::size_t n) {
+  constexpr int kMaxHomes = 100;
+  constexpr double kLevel = 0.5;  // metres
   const MissionCommand& command = commands_[n];
-  const bool is_here =
-      command.params[0] == 1 || (!command.has_position() && command.altitude_m == 0);
+  const bool is_nowhere = !command.has_position() && command.altitude_m == 0;
+  const bool is_here = command.params[0] == 1 || (is_nowhere && autopilot_.is_copter());
   former_home_z_ = home_z_;
+  if (++homes_set_ > kMaxHomes) {
+    return give_up(n, "sets its home more than 100 times: what it flies then is not judged");
+  }
   if (is_here && (is_winged_ || (hover_ && hover_->is_on_circle()))) {
-    flight_.remark(Weight::not_judged, "not_judged", n,
-                   "where on its way it is when it sets its home there is not judged");
+    give_up(n, "where on its way it is when it sets its home there is not judged");
+  }
+  if (is_here && high() - low() > kLevel) {
+    give_up(n, "how high it is when it sets its home there is not judged");
+  }
+  const auto next = commands_.next_position(n);
+  const bool takes_off =
+      next && (task_of(*next) == Task::take_off || task_of(*next) == Task::vtol_take_off);
+  if (is_here && !has_flown_ && !takes_off) {
+    return give_up(n, "where it is when it sets its home there is not judged");
   }
   if (is_here) {
     home_ = here();
     home_z_ = low();
+  } else if (formats::is_above_ground(command.frame)) {
+    return give_up(n, "a home at a height above the ground is not judged");
   } else {
     home_ = to_local(command.lon, command.lat);
     home_z_ =
@@ -51,6 +66,7 @@ void Walker::set_home(std::size_t n) {
   flight_.remark(Weight::note, "set_home", n,
                  "from here on heights relative to home count from " +
                      std::to_string(int(std::lround(home_z_))) + " m above sea level");
+  return false;
 }
 
 void Walker::set_hover_speed() {
@@ -61,6 +77,12 @@ void Walker::set_hover_speed() {
 }
 
 void Walker::set_wing_speed() {
+  flight_.wind_mps = options_.wind_mps;
+  if (options_.wind_mps > min_airspeed() / 2) {
+    give_up(0, "flight in a wind of more than half its least airspeed is not judged");
+  } else if (options_.wind_mps == 0) {
+    flight_.remark(Weight::note, "wind", 0, "is judged in still air (--wind)");
+  }
   if (wing_speed_[1] > 0) {
     wing_->set_speed(wing_speed_[0], wing_speed_[1]);
     return;

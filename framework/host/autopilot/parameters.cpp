@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/autopilot/parameters.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -40,6 +41,13 @@ const Row kRows[] = {
     {"RALLY_LIMIT_KM", {0.3, 5, kNone, kNone}},
     {"RALLY_INCL_HOME", {1, 0, kNone, kNone}},
     {"FENCE_ENABLE", {0, 0, kNone, kNone}},
+    {"FENCE_AUTOENABLE", {0, 0, kNone, kNone}},
+    {"FENCE_TYPE", {7, 4, kNone, kNone}},
+    {"FENCE_ALT_MAX", {100, 100, kNone, kNone}},
+    {"FENCE_ALT_MIN", {-10, -10, kNone, kNone}},
+    {"FENCE_RADIUS", {300, 300, kNone, kNone}},
+    {"GF_MAX_VER_DIST", {kNone, kNone, 0, 0}},
+    {"GF_MAX_HOR_DIST", {kNone, kNone, 0, 0}},
     {"WP_RADIUS", {kNone, 90, kNone, kNone}},
     {"WP_LOITER_RAD", {kNone, 60, kNone, kNone}},
     {"NAVL1_PERIOD", {kNone, 17, kNone, kNone}},
@@ -84,6 +92,29 @@ const Row kRows[] = {
     {"FW_T_CLMB_MAX", {kNone, kNone, kNone, 5}},
     {"FW_R_LIM", {kNone, kNone, kNone, 50}},
 };
+
+/// Those that may be 0 or less; flight with such a value of the others is none.
+constexpr std::string_view kMayBeZero[] = {
+    "RTL_ALT_M",       "RTL_CLIMB_MIN_M", "RTL_CONE_SLOPE",   "RTL_ALT_TYPE",    "RALLY_LIMIT_KM",
+    "RALLY_INCL_HOME", "FENCE_ENABLE",    "FENCE_AUTOENABLE", "FENCE_TYPE",      "FENCE_ALT_MAX",
+    "FENCE_ALT_MIN",   "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",
+    "ALT_SLOPE_MIN",   "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
+    "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
+    "RTL_DESCEND_ALT", "RTL_TYPE"};
+
+void expect_possible(const Row& row, double value) {
+  const std::string_view name = row.name;
+  const bool is_angle =
+      name == "ROLL_LIMIT_DEG" || name == "PTCH_LIM_MAX_DEG" || name == "FW_R_LIM";
+  const double most = is_angle ? 85 : 1e5;
+  const bool may_be_zero =
+      std::find(std::begin(kMayBeZero), std::end(kMayBeZero), name) != std::end(kMayBeZero);
+  if (!(std::abs(value) <= most) || (!may_be_zero && !(value > 0))) {
+    throw Error("parameter " + std::string(name) + ": expected " +
+                (may_be_zero ? "at most " : "more than 0, at most ") +
+                std::to_string(std::llround(most)) + ", found " + std::to_string(value));
+  }
+}
 
 const Row& row_of(std::string_view name) {
   for (const Row& row : kRows) {
@@ -158,6 +189,9 @@ double Parameters::operator()(std::string_view name) const {
   const std::size_t column = (autopilot_.is_px4() ? 2 : 0) + (autopilot_.is_copter() ? 0 : 1);
   const std::optional<double> given = value_in(file_, row);
   const double value = given.value_or(row.defaults[column]);
+  if (given) {
+    expect_possible(row, value);
+  }
   used_.emplace(name, Used{std::string(name), value, given.has_value()});
   return value;
 }

@@ -88,6 +88,10 @@ std::vector<Walker::Refuge> Walker::refuges() const {
 }
 
 void Walker::return_hover(std::size_t n, const Refuge& refuge) {
+  if (is_px4() && parameter("RTL_TYPE") != 0) {
+    give_up(n, "a return that may go to a landing, or along the mission (RTL_TYPE), is not judged");
+    return;
+  }
   const double distance = (refuge.at - hover_->at).norm();
   const auto target = [&](double z) {
     if (is_px4()) {
@@ -105,10 +109,6 @@ void Walker::return_hover(std::size_t n, const Refuge& refuge) {
     }
     return home_z_ + std::max(height, 0.3);
   };
-  if (!is_px4() && autopilot_.is_copter() && parameter("RTL_ALT_TYPE") != 0) {
-    flight_.remark(Weight::not_judged, "not_judged", n,
-                   "a return at a height above the ground (RTL_ALT_TYPE) is not judged");
-  }
   double lowest = target(hover_->low);
   double highest = target(hover_->high);
   if (former_home_z_) {  // its height above the former home may count

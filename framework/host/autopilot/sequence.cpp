@@ -57,6 +57,9 @@ std::optional<std::size_t> Sequence::next_position(std::size_t n) const {
       if (formats::flies_to_position(task_of(i).task)) {
         return i;
       }
+      if (task_of(i).task == Task::return_home || task_of(i).task == Task::change_altitude) {
+        return std::nullopt;
+      }
       if (is_jump(i) && jumps_left(i) != 0) {
         if (const auto target = target_of(i)) {
           i = *target;

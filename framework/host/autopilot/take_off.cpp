@@ -54,7 +54,8 @@ bool Walker::take_off(std::size_t n) {
   } else if (is_px4()) {
     return !autopilot_.is_copter() ? false : fly_hover(n);
   } else if (is_winged_) {
-    return false;
+    const bool is_above = autopilot_.airframe == Airframe::plane && low() >= destination(n).high;
+    return !is_above && give_up(n, "a take-off in flight is not judged");
   }
   has_flown_ = true;
   if (autopilot_.airframe == Airframe::plane) {
@@ -69,12 +70,16 @@ bool Walker::take_off(std::size_t n) {
     if (autopilot_.is_copter()) {
       hover_->go(n, "the way from home", there);
     } else {
-      begin_to_wing(there.at);
-      fly_wing_to(n, "the way from home", there, true);
+      const bool is_here = (there.at - hover_->at).norm() < 1;
+      if (!(is_here ? begin_to_next(n) : begin_to_wing(n, there.at))) {
+        return true;
+      }
+      if (!is_here) {
+        fly_wing_to(n, "the way from home", there, true);
+      }
     }
-  } else if (!autopilot_.is_copter()) {
-    const auto next = next_destination(n);
-    begin_to_wing(next ? next->at : home_ + Eigen::Vector2d(1, 0));
+  } else if (!autopilot_.is_copter() && !begin_to_next(n)) {
+    return true;
   }
   flight_.before = n;
   return false;
@@ -123,22 +128,39 @@ bool Walker::take_off_along_runway(std::size_t n) {
   return false;
 }
 
-void Walker::begin_to_wing(const Eigen::Vector2d& toward) {
+bool Walker::begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& toward) {
+  constexpr double kLongest = 15;  // seconds: VT_TRANS_TIMEOUT
+  constexpr double kReach = 8;     // metres
+  if (!toward || (*toward - hover_->at).norm() < 1) {
+    return !give_up(n,
+                    "where it speeds up after its climb depends on where it points: a waypoint "
+                    "must follow");
+  }
+  const Eigen::Vector2d begin = hover_->at;
   wing_.emplace(flight_);
   set_wing_speed();
   is_winged_ = true;
-  wing_->start(hover_->at, hover_->low, toward);  // it turns on the spot, then flies ahead
+  const Eigen::Vector2d end =
+      begin + kLongest * wing_->speed_mps[1] * (*toward - begin).normalized();
+  flight_.begin(n, "the transition to flight on wings");
+  flight_.add_strip({begin.x(), begin.y(), hover_->low}, hover_->high,
+                    {end.x(), end.y(), hover_->low}, hover_->high, kReach);
+  flight_.take({0, kLongest});
+  wing_->start_on(begin, end, hover_->low);
+  return true;
+}
+
+bool Walker::begin_to_next(std::size_t n) {
+  const auto next = next_destination(n);
+  return begin_to_wing(n, next ? std::optional(next->at) : std::nullopt);
 }
 
 bool Walker::transition(std::size_t n) {
   constexpr double kToWing = 4;
   if (commands_[n].params[0] == kToWing && hover_ && !is_winged_) {
-    const auto next = next_destination(n);
-    begin_to_wing(next ? next->at : hover_->at + Eigen::Vector2d(1, 0));
+    return !begin_to_next(n);
   } else if (commands_[n].params[0] != kToWing && is_winged_) {
-    flight_.remark(Weight::not_judged, "not_judged", n,
-                   "where the vehicle stops when it changes to hover is not judged");
-    return true;
+    return give_up(n, "where the vehicle stops when it changes to hover is not judged");
   }
   return false;
 }

@@ -67,6 +67,46 @@ class UploadCheck {
   /// What PX4 declares invalid of a whole mission (FeasibilityChecker); false if anything is.
   bool check_feasibility();
 
+  /// What boards store, and of jumps run: ArduPilot's home is an item.
+  void check_counts() {
+    const std::size_t items = commands_.size() + (is_px4() ? 0 : 1);
+    const std::size_t last = commands_.size() - 1;
+    const std::string count = std::to_string(items) + " items";
+    if (items > (is_px4() ? 1000 : 1312)) {
+      refuse(last, "refuses " + count +
+                       (is_px4() ? ": it stores 500, some boards 1,000"
+                                 : ", unless the board has an SD card"));
+    } else if (items > (is_px4() ? 500 : 650)) {
+      flight_.remark(Weight::not_judged, "items", last,
+                     "whether the board stores " + count + " is not judged: " +
+                         (is_px4() ? "most store 500" : "some store 303, 650 or 1,306"));
+    } else if (items > 303 && !is_px4()) {
+      flight_.remark(Weight::note, "items", last, "boards of 8 kB refuse " + count + " (303)");
+    }
+    std::size_t jumps = 0;
+    for (std::size_t n = 0; n < commands_.size(); ++n) {
+      jumps += commands_.is_jump(n);
+    }
+    if (jumps > 15 && !is_px4()) {
+      flight_.remark(Weight::not_judged, "items", last,
+                     "some boards run 15 jumps, others 100: what " + std::to_string(jumps) +
+                         " jumps fly is not judged");
+    }
+  }
+
+  /// ArduPilot's aeroplanes do not arm with a landing sequence that a return does not use.
+  void check_landing_start(std::size_t n) {
+    const bool is_start =
+        commands_.task_of(n).task == Task::landing_start || commands_[n].number == 188;
+    if (!is_start || is_px4() || autopilot_.is_copter() || flight_.parameter("RTL_AUTOLAND") != 0) {
+      return;
+    }
+    const bool is_given = flight_.is_given("RTL_AUTOLAND");
+    flight_.remark(
+        is_given ? Weight::fails : Weight::note, "arming", n,
+        autopilot_.name() + " does not arm with this command unless RTL_AUTOLAND is set");
+  }
+
   /// Reports what is wrong with a command; false if the mission is not flown because of it.
   bool check(std::size_t n) {
     const MissionCommand& command = commands_[n];
@@ -81,6 +121,7 @@ class UploadCheck {
                      "where this flies is not judged: the file has no commands of it");
       return false;
     }
+    check_landing_start(n);
     switch (row.effect(autopilot_)) {
       case Effect::refused:
         return refuse("refused", "refuses the mission at upload because of command " +
@@ -152,6 +193,10 @@ class UploadCheck {
     const Task task = commands_.task_of(n).task;
     if (is_px4() && task == Task::set_home && command.params[0] != 1) {
       return refuse("set_home", "sets a wrong home where a command gives its place");
+    }
+    if (task == Task::set_home && !std::isfinite(command.altitude_m + command.lon + command.lat) &&
+        command.params[0] != 1) {
+      return refuse("set_home", "refuses a home that is not a place");
     }
     if (task == Task::jump && !commands_.target_of(n)) {
       return refuse("refused", "finds no item to jump to");
@@ -245,6 +290,9 @@ std::vector<MissionCommand> stored(std::vector<MissionCommand> commands, Autopil
 bool check_upload(const Sequence& commands, Flight& flight) {
   UploadCheck check(commands, flight);
   bool is_taken = true;
+  if (commands.size() > 0) {
+    check.check_counts();
+  }
   for (std::size_t n = 0; n < commands.size(); ++n) {
     is_taken = check.check(n) && is_taken;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <utility>
 
@@ -36,6 +37,11 @@ class Walker {
 
   void place_home();
 
+  /// Parameters of the file that change a flight in ways that are not modelled.
+  void remark_parameters();
+  /// The autopilot's own fence about home, where it is in force.
+  void check_fences();
+
   // Destinations.
 
   Eigen::Vector2d here() const;
@@ -55,6 +61,9 @@ class Walker {
 
   void note_unflown(std::size_t n);
 
+  /// Reports that what follows is not judged; true: the flight ends here.
+  bool give_up(std::size_t n, const std::string& why);
+
   /// Reports a place that is farther away than is judged.
   bool is_too_far(std::size_t n, const Eigen::Vector2d& at);
 
@@ -71,13 +80,17 @@ class Walker {
 
   bool take_off_along_runway(std::size_t n);
 
-  void begin_to_wing(const Eigen::Vector2d& toward);
+  /// Changes to flight on wings: it speeds up ahead, toward a place. False if no place is known.
+  bool begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& toward);
+  /// The same toward the next position.
+  bool begin_to_next(std::size_t n);
 
   bool transition(std::size_t n);
 
   bool delay(std::size_t n);
 
-  void set_home(std::size_t n);
+  /// True if what follows is not known.
+  bool set_home(std::size_t n);
 
   // Speeds.
 
@@ -148,6 +161,10 @@ class Walker {
     std::size_t times = 0;
     TimeSpan time;
   };
-  std::map<std::pair<std::size_t, std::size_t>, Flown> flown_;
+  /// Of which home and at which speeds a way is flown: each is flown anew.
+  using Way = std::array<double, 8>;
+  Way way_to(std::size_t n) const;
+  std::map<Way, Flown> flown_;
+  int homes_set_ = 0;
 };
 }  // namespace altiplan::host

@@ -4,6 +4,7 @@
 // flown one by one with the autopilot's law of guidance (Park, Deyst and How 2004, equation 1).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/autopilot/flight.hpp"
 
@@ -125,10 +126,11 @@ double Wing::high() const {
 }
 
 double Wing::true_speed(int speed, double z) const {
-  if (flight_.autopilot().is_px4()) {
-    return changing_mps_[speed];
-  }
-  return changing_mps_[speed] * air_ratio(z) * (speed == 0 ? kColdest : kWarmest);
+  constexpr double kLeast = 1;  // against the wind
+  const double airspeed =
+      changing_mps_[speed] *
+      (flight_.autopilot().is_px4() ? 1 : air_ratio(z) * (speed == 0 ? kColdest : kWarmest));
+  return std::max(airspeed + (speed == 0 ? -1 : 1) * flight_.wind_mps, kLeast);
 }
 
 double Wing::turn_distance(double v, const Leg& leg) const {
@@ -461,8 +463,9 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
   const double round = 2 * kPi * radius;
   const double climb =
       std::max(std::abs(bottom - z), std::abs(top - z)) / std::min(climb_mps_, sink_mps_);
-  flight_.take({seconds + turns * round / speed_mps[1] * 0.9,
-                seconds + climb + (turns + 1) * round / speed_mps[0] * 1.1});
+  flight_.take(
+      {seconds + turns * round / (speed_mps[1] + flight_.wind_mps) * 0.9,
+       seconds + climb + (turns + 1) * round / std::min(speed_mps[0], true_speed(0, z)) * 1.1});
   const double sense = clockwise ? -1 : 1;
   if (!next) {                   // it may leave it anywhere
     constexpr int kPlaces = 13;  // the last one is the first
@@ -493,14 +496,27 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
 }
 
 void Wing::land(std::size_t command, const Destination& to) {
-  FlownPart& part = flight_.begin(command, "the landing");
-  part.ground = FlownPart::Ground::touched_along;
+  flight_.begin(command, "the landing").ground = FlownPart::Ground::touched_along;
   const Eigen::Vector2d begin = from_.at;
+  // Its turn onto the slope, which has no least height.
+  Leg slope;
+  slope.to = to;
+  if (has_track_) {
+    cut_corner(slope);
+  }
+  const double slope_min_m = std::exchange(slope_min_m_, 0);
+  std::vector<std::vector<Passed>> passed(members_.size());
+  for (std::size_t n = 0; n < members_.size(); ++n) {
+    fly(members_[n], slope, passed[n]);
+  }
+  fill_between(passed);
+  slope_min_m_ = slope_min_m;
   const double foot = std::min(to.low, flight_.ground(to.at));
   const Vec3 touch(to.at.x(), to.at.y(), std::max(to.low, foot));
   flight_.add_strip({begin.x(), begin.y(), low()}, high(), touch, touch.z(), kReach);
   const double length = (to.at - begin).norm();
-  flight_.take({length / speed_mps[1], length / speed_mps[0] * 1.5 + 30});
+  flight_.take({length / (speed_mps[1] + flight_.wind_mps),
+                length / std::max(speed_mps[0] - flight_.wind_mps, 1.0) * 1.5 + 30});
   // It rolls out on the ground, or a little above.
   Vec3 before = touch;
   for (int step = 1; step <= 10; ++step) {
@@ -518,9 +534,12 @@ void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double hea
   const double foot = flight_.ground(from);
   const double height = std::max(z - foot, 1.0);
   const bool is_px4 = flight_.autopilot().is_px4();
-  const double steep = is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0]
-                              : std::tan(radians(flight_.parameter("PTCH_LIM_MAX_DEG")));
-  const double shallow = is_px4 ? 2 / speed_mps[1] : std::tan(radians(4));
+  const double against = speed_mps[0] / std::max(speed_mps[0] - flight_.wind_mps, 1.0);
+  const double with = speed_mps[1] / (speed_mps[1] + flight_.wind_mps);
+  const double steep =
+      against * (is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0]
+                        : std::tan(radians(flight_.parameter("PTCH_LIM_MAX_DEG"))));
+  const double shallow = with * (is_px4 ? 2 / speed_mps[1] : std::tan(radians(4)));
   constexpr int kRays = 5;
   for (int ray = 0; ray < kRays; ++ray) {
     const double course = heading + spread * (2.0 * ray / (kRays - 1) - 1);
@@ -531,8 +550,8 @@ void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double hea
     flight_.add_strip({from.x(), from.y(), foot}, foot, near, z, kReach);
     flight_.add_strip(near, is_px4 ? z : z + kLevelsOff, far, is_px4 ? z : z + kLevelsOff, kReach);
   }
-  const double v = speed_mps[1];
-  flight_.take({height / steep / v, height / shallow / speed_mps[0] + 10});
+  flight_.take({height / steep / (speed_mps[1] + flight_.wind_mps),
+                height / shallow / std::max(speed_mps[0] - flight_.wind_mps, 1.0) + 10});
   start_on(from + height / steep * unit(heading), from + height / shallow * unit(heading), z);
   if (!is_px4) {  // it levels off late, and fast
     for (Member& member : members_) {

@@ -26,7 +26,16 @@ void add_home(PlanReport& report, const formats::MissionFile& plan, const World&
   }
   const auto [x, y] = world.frame().to_local(plan.home->lon, plan.home->lat);
   const std::optional<double> ground = world.ground(x, y);
-  if (!ground || std::abs(plan.home->altitude_m - *ground) <= kHomeTolerance) {
+  if (!ground) {
+    return;
+  }
+  const double off = plan.home->altitude_m - *ground;
+  if (std::abs(off) <= kHomeTolerance) {
+    if (relative > 0 && std::abs(off) > 1) {
+      report.notes.push_back("heights count from home, which the mission has " +
+                             with_decimals(std::abs(off), 1) + " m " +
+                             (off > 0 ? "above" : "below") + " the ground");
+    }
     return;
   }
   Violation violation;
