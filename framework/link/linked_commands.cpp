@@ -109,6 +109,9 @@ void LinkedVehicle::hand_back(int item) {
 }
 
 void LinkedVehicle::ask(FlightMode mode) {
+  if (!is_in_own_mode()) {
+    return;  // its pilot's, or a failsafe's
+  }
   if (++asks_ > kMaxAsks) {
     give_up_in_hold("the vehicle does not change its mode, " + feed_.mode_name() +
                     feed_.quoted_text());
@@ -146,6 +149,7 @@ void LinkedVehicle::release() {
   constexpr Time kTimeout{400};  // then the guardian does it
   constexpr Time kAgain{200};
   Time ask_at{0};
+  commands_ = commands_ && is_in_own_mode();  // else somebody has taken it
   for (const Time end = time_now() + kTimeout;
        commands_ && feed_.mode() != FlightMode::hold && time_now() < end;) {
     if (time_now() >= ask_at) {

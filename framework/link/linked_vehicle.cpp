@@ -121,11 +121,8 @@ void LinkedVehicle::start_mission() {
   try {
     arm_and_start();
   } catch (const VehicleLost&) {
-    if (!was_armed) {  // or its motors would run on
-      constexpr int kTimes = 3;
-      for (int n = 0; n < kTimes; ++n) {
-        feed_.send(command_to(feed_.vehicle(), VehicleCommand::kArm, 0));
-      }
+    if (!was_armed) {
+      undo_start();
     }
     throw;
   }
@@ -137,6 +134,20 @@ void LinkedVehicle::start_mission() {
   const auto& wing = request_->vehicle.wing;
   feed_.send(command_to(feed_.vehicle(), VehicleCommand::kChangeSpeed, wing ? kAir : kGround,
                         float(wing ? wing->airspeed_mps : request_->vehicle.speed_mps), -1));
+}
+
+void LinkedVehicle::undo_start() {
+  constexpr int kTimes = 3;
+  constexpr Time kBetween{200};
+  const FlightMode mode = feed_.mode();
+  const bool is_ours = mode == FlightMode::mission || mode == FlightMode::commanded;
+  for (int n = 0; n < kTimes; ++n) {
+    if (is_ours) {  // it may have taken off
+      feed_.send(mode_command(feed_.vehicle(), FlightMode::hold));
+    }
+    feed_.send(command_to(feed_.vehicle(), VehicleCommand::kArm, 0));
+    std::this_thread::sleep_for(kBetween);
+  }
 }
 
 void LinkedVehicle::begin_at_first_item() {
@@ -315,7 +326,7 @@ void LinkedVehicle::expect_in_reach() {
   } else if (!feed_.has_other_mission()) {
     give_up("the vehicle is in the mode " + feed_.mode_name() +
             ", which this flight has not asked for: it is left alone" + feed_.quoted_text());
-  } else if (commands_) {
+  } else if (commands_ && is_in_own_mode()) {
     give_up_in_hold("another program has replaced the vehicle's mission: it is told to hold");
   } else {
     give_up("another program has replaced the vehicle's mission: it is left alone");

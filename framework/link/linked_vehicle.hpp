@@ -57,6 +57,8 @@ class LinkedVehicle final : public host::FlownVehicle {
   void await_position();
   void ask_for_reports();
   void start_mission();
+  /// Of a start that failed: holds in the air, or disarms on the ground.
+  void undo_start();
   /// Autopilots turn to the second item before they are at the first.
   void await_nearest(const Vec3& start);
   /// Asks again until the vehicle reports that its mission begins with the first item.

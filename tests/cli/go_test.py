@@ -86,6 +86,16 @@ class Go(unittest.TestCase):
         self.call("check", "low/route.plan", "--terrain", TERRAIN, "--min-agl", "50", "--max-agl",
                   "120")
 
+    def test_a_flight_may_be_off_by_what_its_route_keeps(self):
+        self.go("--terrain", TERRAIN, *ENDS, "--max-agl", "120", "-o", "first", folder="first")
+        text = (self.folder / "first/scenario.yaml").read_text()
+        for constraint in ("ground_clearance: {min_m: 53, applies_to: route}",
+                           "altitude: {datum: ground, max_m: 117, applies_to: route}",
+                           "clearance: {min_m: 3, applies_to: route}",
+                           "ground_clearance: {min_m: 50, applies_to: track}",
+                           "altitude: {datum: ground, max_m: 120, applies_to: track}"):
+            self.assertIn("  - " + constraint, text)
+
     def test_a_wing(self):
         out = self.go("--terrain", TERRAIN, *ENDS, "--wing", "80", "--via", "-84.30,36.58,150",
                       "-o", "wing", folder="wing")

@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import sys
+import time
 
 from flown_case import SPEEDUP, FlownCase, unittest
 
@@ -108,6 +109,16 @@ class Fly(FlownCase):
                     self.assertIn("the vehicle has left its mission before the first item: " +
                                   words, flight["message"])
 
+    def test_a_start_without_an_answer_is_undone(self):
+        """It has begun all the same, and climbs."""
+        faults = ('[{"fault": "lose", "direction": "out", "message": "COMMAND_ACK", "command": 300,'
+                  ' "count": 9}]')
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--faults", faults, speedup=1)
+        code, flight, out = self.fly(self.planned(), vehicle, *TAKEOFF, "--arm")
+        self.assertEqual(code, 1, out)
+        self.assertIn("does not answer the command to start its mission", flight["message"])
+        self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 5))
+
     def test_without_command_a_danger_is_only_noted(self):
         vehicle = self.vehicle("--autopilot", "ardupilot")
         code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm")
@@ -152,6 +163,22 @@ class Fly(FlownCase):
                 process.send_signal(number)
                 self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 20))
                 self.assertIn(process.wait(30), (-signal.SIGKILL, 130))
+
+    def test_a_pilot_who_has_switched_keeps_the_vehicle(self):
+        """Also where the flight ends before the new mode has been looked at for long."""
+        result = self.planned(pop_up=True)
+        switch = ('[{"fault": "switch", "mode": "RTL", "skip": 60, "count": 1, "message":'
+                  ' ["SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED"]}]')
+        for autopilot in ("ardupilot", "px4"):
+            with self.subTest(autopilot=autopilot):
+                vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
+                                       "--faults", switch, speedup=3)
+                process = self.flying(result, vehicle, *TAKEOFF, "--arm", "--command")
+                self.assertTrue(vehicle.wait(lambda: "RTL" in vehicle.modes(), 60))
+                time.sleep(1.2)  # a heartbeat later
+                process.send_signal(signal.SIGINT)
+                process.wait(30)
+                self.assertFalse(vehicle.wait(lambda: vehicle.modes()[-1] != "RTL", 4))
 
     def test_a_late_planner_leaves_the_vehicle_in_hold(self):
         vehicle = self.vehicle("--autopilot", "generic", speedup=3)

@@ -105,6 +105,14 @@ class Vehicle(unittest.TestCase):
         for line in ("mission: 2 items uploaded, read back equal", "fence: 1 items uploaded, read back equal",
                      "rally points: 1 items uploaded, read back equal"):
             self.assertIn(line, out)
+        # Judged as ArduPilot's copter flies it, it goes to no other vehicle.
+        for other in (("--autopilot", "px4"), ("--autopilot", "ardupilot", "--type", "plane")):
+            code, out, err = altiplan("upload", self.path("mission.plan"), "--to", self.vehicle(*other),
+                                      "--terrain", os.path.join(SOURCES, "configs", "data",
+                                                                "jacksboro_fault.tif"))
+            self.assertEqual(code, 1, out + err)
+            self.assertIn("the mission was judged as flown by ArduPilot copter, and the vehicle is", err)
+            self.assertNotIn("uploaded, read back", out)
         # A plan without zones over that fence.
         for options, line in (((), "fence: the vehicle keeps one of 1 items"),
                               (("--clear-fence",), "fence: 0 items uploaded, read back equal")):
@@ -121,6 +129,14 @@ class Vehicle(unittest.TestCase):
                                       "--home-altitude", "0")
             self.assertEqual(code, 0, out + err)
             self.assertIn("read back equal", out)
+
+    def test_what_will_be_refused_is_said_beforehand(self):
+        address = self.vehicle("--autopilot", "px4", "--type", "plane", faults=[
+            {"fault": "change", "infeasible": "Landing pattern required"}])
+        code, out, err = altiplan("upload", self.result, "--to", address)
+        self.assertEqual(code, 1, out + err)
+        self.assertIn("PX4 plane refuses a mission without a landing (MIS_TKO_LAND_REQ)", err)
+        self.assertIn("Landing pattern required", out)
 
     def test_loss_is_harmless(self):
         address = self.vehicle("--autopilot", "ardupilot", faults=[

@@ -185,9 +185,11 @@ int fly_result(const FlyArguments& arguments) {
   return connected(arguments.link, [&](Connection& connection) {
     const bool is_ready =
         is_of_kind(connection.vehicle, source->mission.request.vehicle.wing.has_value()) &&
-        (!arguments.command || accepts_failsafe(connection, arguments.accept_failsafe)) &&
-        upload_plan(connection, plan, arguments.fence);
-    return is_ready
+        (!arguments.command || accepts_failsafe(connection, arguments.accept_failsafe));
+    if (is_ready) {
+      tell_refusals(connection.vehicle, formats::read_mission("route.plan", *written->text));
+    }
+    return is_ready && upload_plan(connection, plan, arguments.fence)
                ? fly(arguments, *source, *written, plan, connection)
                : kNoRoute;
   });

@@ -22,7 +22,63 @@ bool upload(Connection& connection, const host::Plan& plan, link::PlanType type,
   }
   return changed.empty();
 }
+
+/// None where the autopilot is neither ArduPilot nor PX4.
+std::optional<formats::Autopilot> autopilot_of(const link::Vehicle& vehicle) {
+  using formats::Airframe;
+  using formats::Firmware;
+  constexpr std::uint8_t kFixedWing = 1;
+  if (!vehicle.is_ardupilot() && !vehicle.is_px4()) {
+    return std::nullopt;
+  }
+  const Airframe airframe = !link::is_fixed_wing(vehicle.heartbeat)   ? Airframe::copter
+                            : vehicle.heartbeat.type == kFixedWing ? Airframe::plane
+                                                                   : Airframe::vtol;
+  return formats::Autopilot{vehicle.is_px4() ? Firmware::px4 : Firmware::ardupilot, airframe};
+}
 }  // namespace
+
+void tell_refusals(const link::Vehicle& vehicle, const formats::MissionFile& mission) {
+  const std::optional<formats::Autopilot> autopilot = autopilot_of(vehicle);
+  if (!autopilot) {
+    return;
+  }
+  host::GateOptions gate;
+  gate.firmware = autopilot->firmware;
+  gate.airframe = autopilot->airframe;
+  for (const host::FlownMission& flown : host::flights_of(mission, nullptr, gate)) {
+    for (const host::Remark& remark : flown.remarks) {
+      if (remark.rule == "refused") {
+        warn(host::name_of_command(mission.commands[remark.command]) + ": " + remark.message);
+      }
+    }
+  }
+}
+
+bool is_judged_for(const link::Vehicle& vehicle, const formats::MissionFile& mission,
+                   const host::GateOptions& gate) {
+  const std::optional<formats::Autopilot> autopilot = autopilot_of(vehicle);
+  if (!autopilot) {
+    warn("the vehicle's autopilot is neither ArduPilot nor PX4: how it flies is not judged");
+    return true;
+  }
+  std::string judged;
+  for (const formats::Autopilot& possible :
+       host::possible_autopilots(mission, gate.firmware, gate.airframe)) {
+    // ArduPilot's VTOL may call itself a fixed wing.
+    const bool is_plane = possible.airframe == formats::Airframe::vtol && !possible.is_px4() &&
+                          autopilot->airframe == formats::Airframe::plane;
+    if (possible.firmware == autopilot->firmware &&
+        (possible.airframe == autopilot->airframe || is_plane)) {
+      return true;
+    }
+    judged += (judged.empty() ? "" : ", ") + possible.name();
+  }
+  std::cerr << "altiplan: the mission was judged as flown by " << judged << ", and the vehicle is "
+            << autopilot->name()
+            << ": nothing was uploaded; --autopilot and --vehicle say who flies it\n";
+  return false;
+}
 
 host::Plan plan_to_upload(const host::Exported& written) {
   if (written.mission.decimals.degrees > 7) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "host/gate/plan_report.hpp"
 #include "host/import_export/export.hpp"
 #include "host/import_export/plan.hpp"
 #include "link_options.hpp"
@@ -14,6 +15,12 @@ struct FenceOptions {
   bool leave = false;
   bool clear = false;  ///< where the plan has no zones
 };
+
+/// Prints what the vehicle's autopilot refuses of the mission, before it is uploaded.
+void tell_refusals(const link::Vehicle& vehicle, const formats::MissionFile& mission);
+/// False, and said, where the vehicle is none of those that the mission was judged for.
+bool is_judged_for(const link::Vehicle& vehicle, const formats::MissionFile& mission,
+                   const host::GateOptions& gate);
 
 /// Uploads the mission, the fence and the rally points, reads them back and prints what the vehicle
 /// changed, and a fence that it keeps. True if it holds what was sent.

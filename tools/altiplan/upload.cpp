@@ -13,26 +13,40 @@ struct UploadArguments {
   FenceOptions fence;
 };
 
+struct Uploaded {
+  formats::MissionFile mission;
+  host::Plan plan;
+};
+
 /// A mission's own items, if it passes; a result's route as it is written.
-std::optional<host::Plan> plan_of(const UploadArguments& arguments) {
+std::optional<Uploaded> uploaded(const UploadArguments& arguments) {
   const std::string& file = arguments.route.result;
   if (!is_mission(arguments.mission, file)) {
     const std::optional<host::Exported> written = exported(arguments.route, std::nullopt);
-    return written ? std::optional(plan_to_upload(*written)) : std::nullopt;
+    return written ? std::optional(Uploaded{formats::read_mission("route.plan", *written->text),
+                                            plan_to_upload(*written)})
+                   : std::nullopt;
   }
   if (check_plan(arguments.mission.plan, arguments.route.overrides) != kDone) {
     return std::nullopt;
   }
-  return host::plan_of(formats::read_mission(file));
+  const formats::MissionFile mission = formats::read_mission(file);
+  return Uploaded{mission, host::plan_of(mission)};
 }
 
 int upload_result(const UploadArguments& arguments) {
-  const std::optional<host::Plan> plan = plan_of(arguments);
-  if (!plan) {
+  const std::optional<Uploaded> source = uploaded(arguments);
+  if (!source) {
     return kNoRoute;
   }
+  const bool is_file = is_mission(arguments.mission, arguments.route.result);
   return connected(arguments.link, [&](Connection& connection) {
-    return upload_plan(connection, *plan, arguments.fence) ? kDone : kNoRoute;
+    if (is_file &&
+        !is_judged_for(connection.vehicle, source->mission, arguments.mission.plan.gate)) {
+      return kNoRoute;
+    }
+    tell_refusals(connection.vehicle, source->mission);
+    return upload_plan(connection, source->plan, arguments.fence) ? kDone : kNoRoute;
   });
 }
 }  // namespace

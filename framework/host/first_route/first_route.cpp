@@ -161,20 +161,24 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
   return text;
 }
 
-std::string FirstRoute::heights(double margin) const {
-  std::string text = "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) + "}\n";
+std::string FirstRoute::heights(double margin, const std::string& applies_to) const {
+  std::string text = "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) +
+                     applies_to + "}\n";
   if (heights_.max_m) {
-    text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m - margin) + "}\n";
+    text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m - margin) +
+            applies_to + "}\n";
   }
   return text;
 }
 
 std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) const {
   std::string text = world(environment(volume, folder), volume) +
-                     "constraints:  # by what a flight may be off, narrower than asked for\n" +
-                     heights(flown_margin());
+                     "constraints:  # of the route narrower than asked for, by what a flight may be "
+                     "off\n" +
+                     heights(flown_margin(), ", applies_to: route") +
+                     heights(0, ", applies_to: track");
   if (!wish_.turn_radius_m) {
-    text += "  - clearance: {min_m: " + text_of(kFlownWithin) + "}\n";
+    text += "  - clearance: {min_m: " + text_of(kFlownWithin) + ", applies_to: route}\n";
   }
   return text;
 }
@@ -183,7 +187,7 @@ std::string FirstRoute::flown_scenario() const {
   constexpr double kFar = 1e8;  // metres: the ground and the zones alone bound a flight
   return world(environment(volume(kTries - 1), "."),
                {Vec3::Constant(-kFar), Vec3::Constant(kFar)}) +
-         "constraints:\n" + heights(0);
+         "constraints:\n" + heights(0, "");
 }
 
 std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,

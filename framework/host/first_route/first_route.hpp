@@ -46,7 +46,7 @@ class FirstRoute {
   /// By how much the limits of height are narrower than wished for, as far as the points allow.
   double flown_margin() const;
   std::string world(const std::string& environment, const Box& volume) const;
-  std::string heights(double margin) const;
+  std::string heights(double margin, const std::string& applies_to) const;
   std::string scenario(const Box& volume, const std::filesystem::path& folder) const;
   std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
   double speed_mps() const;
