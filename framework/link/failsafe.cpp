@@ -116,9 +116,9 @@ Failsafe px4_failsafe(const Parameters& value) {
   const double stale_s = value.at("COM_OF_LOSS_T");
   const Action first = action_of(kPx4SetPointLoss, value.at("COM_OBL_RC_ACT"));
   const Action then = action_of(kPx4StationLoss, value.at("NAV_DLL_ACT"));
-  return {"it flies on for " + host::rounded_text(stale_s, 1) + " s and " + first.words +
-              then.words,
-          first.is_safe && then.is_safe && stale_s <= kLongestStale};
+  return {
+      "it flies on for " + host::rounded_text(stale_s, 1) + " s and " + first.words + then.words,
+      first.is_safe && then.is_safe && stale_s <= kLongestStale};
 }
 
 Failsafe copter_failsafe(const Parameters& value) {

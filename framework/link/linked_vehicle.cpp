@@ -188,7 +188,7 @@ void LinkedVehicle::arm_and_start() {
   if (is_copter) {
     change_mode(FlightMode::mission, to_fly);
     expect(command_to(vehicle, VehicleCommand::kStartMission), "to start its mission",
-           [&] { return feed_.acknowledged(VehicleCommand::kStartMission) == 0; });
+           [&] { return feed_.acknowledged(VehicleCommand::kStartMission) == 0 || flies_route(); });
   }
 }
 
@@ -198,8 +198,9 @@ void LinkedVehicle::change_mode(FlightMode mode, const std::string& what) {
 
 void LinkedVehicle::expect(const CommandLong& command, const std::string& what,
                            const std::function<bool()>& is_done) {
-  constexpr int kTries = 5;
-  constexpr Time kTimeout{1500};  // heartbeats come each second
+  // For some heartbeats, which come each second; a copter that was armed disarms after 10 s.
+  constexpr int kTries = 15;
+  constexpr Time kTimeout{500};
   for (int n = 0; n < kTries && !stop_.stop_requested(); ++n) {
     feed_.send(command);
     for (const Time end = time_now() + kTimeout; time_now() < end && !stop_.stop_requested();) {

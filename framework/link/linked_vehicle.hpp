@@ -99,8 +99,8 @@ class LinkedVehicle final : public host::FlownVehicle {
   std::stop_token stop_;
   const Request* request_ = nullptr;
   Time began_ = time_now();
-  bool is_flying_ = false;  ///< its mission
-  int flown_item_ = 0;      ///< the last that the autopilot flew to by itself
+  bool is_flying_ = false;                 ///< its mission
+  int flown_item_ = 0;                     ///< the last that the autopilot flew to by itself
   std::optional<Time> not_started_since_;  ///< before the first item: off the mission
   std::optional<Time> strange_since_;
   Time told_at_{0};

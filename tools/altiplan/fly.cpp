@@ -42,8 +42,8 @@ bool is_of_kind(const link::Vehicle& vehicle, bool is_wing) {
     return true;
   }
   tell_user(std::string("the route is ") + (is_wing ? "an aeroplane's" : "a multirotor's") +
-      ", and the vehicle is a " + link::type_in_words(vehicle.heartbeat) +
-      ": nothing was uploaded");
+            ", and the vehicle is a " + link::type_in_words(vehicle.heartbeat) +
+            ": nothing was uploaded");
   return false;
 }
 
@@ -54,9 +54,9 @@ bool accepts_failsafe(Connection& connection, bool accepted) {
       link::read_failsafe(connection.link, connection.vehicle, connection.stop);
   const bool goes_on = failsafe.is_safe || accepted;
   tell_user("when nothing reaches the vehicle any more, " + failsafe.words +
-      (goes_on ? ""
-               : ": neither a hold nor a return, so nothing was uploaded; --accept-failsafe "
-                 "commands it all the same"));
+            (goes_on ? ""
+                     : ": neither a hold nor a return, so nothing was uploaded; --accept-failsafe "
+                       "commands it all the same"));
   return goes_on;
 }
 

@@ -31,9 +31,9 @@ std::optional<formats::Autopilot> autopilot_of(const link::Vehicle& vehicle) {
   if (!vehicle.is_ardupilot() && !vehicle.is_px4()) {
     return std::nullopt;
   }
-  const Airframe airframe = !link::is_fixed_wing(vehicle.heartbeat)   ? Airframe::copter
-                            : vehicle.heartbeat.type == kFixedWing ? Airframe::plane
-                                                                   : Airframe::vtol;
+  const Airframe airframe = !link::is_fixed_wing(vehicle.heartbeat) ? Airframe::copter
+                            : vehicle.heartbeat.type == kFixedWing  ? Airframe::plane
+                                                                    : Airframe::vtol;
   return formats::Autopilot{vehicle.is_px4() ? Firmware::px4 : Firmware::ardupilot, airframe};
 }
 }  // namespace

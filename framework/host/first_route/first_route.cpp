@@ -162,8 +162,8 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
 }
 
 std::string FirstRoute::heights(double margin, const std::string& applies_to) const {
-  std::string text = "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) +
-                     applies_to + "}\n";
+  std::string text =
+      "  - ground_clearance: {min_m: " + text_of(heights_.min_m + margin) + applies_to + "}\n";
   if (heights_.max_m) {
     text += "  - altitude: {datum: ground, max_m: " + text_of(*heights_.max_m - margin) +
             applies_to + "}\n";
@@ -172,11 +172,11 @@ std::string FirstRoute::heights(double margin, const std::string& applies_to) co
 }
 
 std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) const {
-  std::string text = world(environment(volume, folder), volume) +
-                     "constraints:  # of the route narrower than asked for, by what a flight may be "
-                     "off\n" +
-                     heights(flown_margin(), ", applies_to: route") +
-                     heights(0, ", applies_to: track");
+  std::string text =
+      world(environment(volume, folder), volume) +
+      "constraints:  # of the route narrower than asked for, by what a flight may be "
+      "off\n" +
+      heights(flown_margin(), ", applies_to: route") + heights(0, ", applies_to: track");
   if (!wish_.turn_radius_m) {
     text += "  - clearance: {min_m: " + text_of(kFlownWithin) + ", applies_to: route}\n";
   }
