@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "maker.hpp"
+#include "objective_bench.hpp"
 #include "pilot_bench.hpp"
 #include "planner_bench.hpp"
 #include "probe.hpp"
@@ -161,6 +162,10 @@ std::string answers_of(const PluginEntry& entry, const Setup& setup) {
                  [&](const Factory<Planner>& make) { return of_planner(make, options); },
                  [&](const Factory<LocalPlanner>& make) { return of_pilot(make, options); },
                  [&](const Factory<Smoother>& make) { return of_smoother(make, options); },
-                 [&](const Factory<Tuner>& make) { return of_tuner(make, options); }});
+                 [&](const Factory<Tuner>& make) { return of_tuner(make, options); },
+                 [&](const ObjectiveFactory& make) {
+                   const ObjectiveBench bench(make, options, setup.before);
+                   return bench.answers(*bench.made());
+                 }});
 }
 }  // namespace altiplan::conformance

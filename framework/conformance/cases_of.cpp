@@ -22,6 +22,9 @@ Cases cases_of(const PluginEntry& entry, const Setup& setup) {
           [&](const Factory<Planner>& make) { return planner_cases(make, options); },
           [&](const Factory<LocalPlanner>& make) { return local_planner_cases(make, options); },
           [&](const Factory<Smoother>& make) { return smoother_cases(make, options); },
-          [&](const Factory<Tuner>& make) { return tuner_cases(make, options); }});
+          [&](const Factory<Tuner>& make) { return tuner_cases(make, options); },
+          [&](const ObjectiveFactory& make) {
+            return objective_cases(make, options, setup.before);
+          }});
 }
 }  // namespace altiplan::conformance

@@ -38,6 +38,10 @@ auto with_factory(const PluginEntry& entry, const Value* parameters, const Visit
   if (entry.tuner != nullptr) {
     return visit(Factory<Tuner>([entry, with] { return entry.tuner(with.get()); }));
   }
+  if (entry.objective != nullptr) {
+    return visit(ObjectiveFactory(
+        [entry, with](const Site& site) { return entry.objective(with.get(), site); }));
+  }
   return Result();
 }
 

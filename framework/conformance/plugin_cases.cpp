@@ -121,7 +121,8 @@ void whole_entry(const PluginEntry& entry, Report& report) {
       {"planner", entry.planner != nullptr},
       {"local_planner", entry.local_planner != nullptr},
       {"smoother", entry.smoother != nullptr},
-      {"tuner", entry.tuner != nullptr}};
+      {"tuner", entry.tuner != nullptr},
+      {"objective", entry.objective != nullptr}};
   for (const auto& [of, set] : makers) {
     report.expect(set == (of == kind), kEntry, [&, of = of, set = set] {
       return "of kind '" + kind + "', the factory of " + of + (set ? " is set" : " is not set");
@@ -213,7 +214,8 @@ void makes(const PluginEntry& entry, Report& report) {
            (entry.planner != nullptr && entry.planner(parameters) != nullptr) ||
            (entry.local_planner != nullptr && entry.local_planner(parameters) != nullptr) ||
            (entry.smoother != nullptr && entry.smoother(parameters) != nullptr) ||
-           (entry.tuner != nullptr && entry.tuner(parameters) != nullptr);
+           (entry.tuner != nullptr && entry.tuner(parameters) != nullptr) ||
+           (entry.objective != nullptr && entry.objective(parameters, site) != nullptr);
   };
   const Value wrong = map_of("no_such_key", scalar("1"));
   try {

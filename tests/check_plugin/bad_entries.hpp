@@ -81,6 +81,8 @@ constexpr PluginEntry careless_entry(const char* name, const char* sentence) {
     entry.local_planner = make;
   } else if constexpr (std::is_same_v<Interface, Smoother>) {
     entry.smoother = make;
+  } else if constexpr (std::is_same_v<Interface, Objective>) {
+    entry.objective = make;
   } else {
     entry.tuner = make;
   }

@@ -23,6 +23,7 @@
 #include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
 #include "altiplan/local_planner.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"

@@ -121,6 +121,16 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
   return entry("environment", name).environment(&value, site);
 }
 
+std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
+                                          const Frame& frame) {
+  static const World kEmpty;
+  Site site;
+  site.before = &kEmpty;
+  site.frame = frame;
+  const Value value = parameters(yaml);
+  return entry("objective", name).objective(&value, site);
+}
+
 std::unique_ptr<Environment> make_environment(std::string_view name, std::string_view yaml) {
   static const World kEmpty;
   Site site;

@@ -10,6 +10,7 @@
 #include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
 #include "altiplan/local_planner.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
 #include "altiplan/smoother.hpp"
@@ -28,6 +29,8 @@ std::unique_ptr<Tuner> make_tuner(std::string_view name, std::string_view yaml =
 std::unique_ptr<Environment> make_environment(std::string_view name, std::string_view yaml,
                                               const Site& site);
 std::unique_ptr<Environment> make_environment(std::string_view name, std::string_view yaml = "{}");
+std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml = "{}",
+                                          const Frame& frame = {});
 /// Problems of the parameters, as the user would read them, one a line; "" where there are none.
 std::string parameter_problems(std::string_view kind, std::string_view name, std::string_view yaml);
 

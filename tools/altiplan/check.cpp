@@ -4,6 +4,7 @@
 
 #include "altiplan/formats/mission_file.hpp"
 #include "commands.hpp"
+#include "host/base/words.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
 #include "host/import_export/imported_route.hpp"
@@ -65,9 +66,16 @@ int report(const host::Mission& mission, const Route& route,
       busy("judging the route", [&] { return host::judge(route, mission.request, mission.via); });
   const Measures measures = measure(route, mission.request);
   bool valid = verdict.ok();
+  const host::Cost cost = host::price(route, mission.request, mission.via);
   host::Json json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}};
+  json.update(host::to_json(std::optional(cost)));
   if (!as_json) {
     print_route(verdict, measures);
+    if (mission.request.objective) {
+      std::printf("  cost %s %s, at least %s: gap %s %%\n", host::with_digits(cost.cost, 6).c_str(),
+                  mission.request.objective->unit().c_str(),
+                  host::with_digits(cost.bound, 6).c_str(), fixed(100 * cost.gap(), 2).c_str());
+    }
   }
   if (track) {
     host::FlightSetup setup;

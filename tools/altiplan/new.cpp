@@ -7,9 +7,9 @@
 #include "altiplan/error.hpp"
 #include "altiplan/formats/input_file.hpp"
 #include "commands.hpp"
+#include "host/base/built_in.hpp"
 #include "host/base/install_root.hpp"
 #include "host/base/output_file.hpp"
-#include "host/base/shapes.hpp"
 #include "host/base/unfinished.hpp"
 #include "host/base/words.hpp"
 #include "host/plugins/registry.hpp"
@@ -25,7 +25,7 @@ struct NewArguments {
   bool python = false;
 };
 
-constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner",
+constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner", "objective",
                                        "planner",    "smoother",    "tuner"};
 constexpr std::string_view kKindsInPython[] = {"constraint", "environment", "planner", "smoother"};
 
@@ -73,9 +73,9 @@ std::string offered_by(const std::string& name) {
       return "a " + std::string(kind) + " of altiplan, not built yet";
     }
   }
-  for (const PluginEntry& entry : host::built_in_environments()) {
+  for (const PluginEntry& entry : host::built_in_plugins()) {
     if (entry.name == name) {
-      return "a built-in environment";
+      return "a built-in " + std::string(entry.kind);
     }
   }
   return "";
@@ -214,8 +214,9 @@ void add_new(App& app, Action& action) {
   auto [command, arguments] = add_command<NewArguments>(
       app, action, "new", "create a complete out-of-tree plugin project in ./NAME", new_project);
   command
-      .add_option("kind", arguments.kind,
-                  "kind: constraint, environment, local_planner, planner, smoother or tuner")
+      .add_option(
+          "kind", arguments.kind,
+          "kind: constraint, environment, local_planner, objective, planner, smoother or tuner")
       ->required();
   command.add_option("name", arguments.name, "name of the plugin and of its folder, in snake_case")
       ->required();

@@ -5,6 +5,7 @@
 #include "flight_text.hpp"
 #include "guarded_run.hpp"
 #include "host/base/output_file.hpp"
+#include "host/base/words.hpp"
 #include "host/result/result_json.hpp"
 #include "table.hpp"
 
@@ -23,19 +24,38 @@ struct RunArguments {
 };
 
 void add_row(Table& table, const std::string& id, const std::string& plugin,
-             const std::string& status, const std::optional<Measures>& m, double seconds) {
+             const std::string& status, const std::optional<Measures>& m, double seconds,
+             const std::vector<Table::Cell>& costs) {
   std::optional<double> length;
   std::optional<double> points;
   if (m) {
     length = m->length_m / 1000;
     points = double(m->waypoints);
   }
-  table.add({id, plugin, Table::Cell(status, color_of(status)), fixed(length, 3), fixed(points, 0),
-             fixed(m ? m->max_turn_deg : std::nullopt, 1),
-             fixed(m ? m->min_radius_m : std::nullopt, 1),
-             fixed(m ? m->max_climb_deg : std::nullopt, 1),
-             fixed(m ? m->min_clearance_m : std::nullopt, 1),
-             fixed(m ? m->min_ground_clearance_m : std::nullopt, 1), fixed(seconds * 1000, 1)});
+  std::vector<Table::Cell> row{id,
+                               plugin,
+                               Table::Cell(status, color_of(status)),
+                               fixed(length, 3),
+                               fixed(points, 0),
+                               fixed(m ? m->max_turn_deg : std::nullopt, 1),
+                               fixed(m ? m->min_radius_m : std::nullopt, 1),
+                               fixed(m ? m->max_climb_deg : std::nullopt, 1),
+                               fixed(m ? m->min_clearance_m : std::nullopt, 1),
+                               fixed(m ? m->min_ground_clearance_m : std::nullopt, 1),
+                               fixed(seconds * 1000, 1)};
+  row.insert(row.end(), costs.begin(), costs.end());
+  table.add(std::move(row));
+}
+
+/// Cost and certified gap of a step's route; nothing where length is minimised.
+std::vector<Table::Cell> costs_of(const host::RunResult& result, const host::StepResult& step) {
+  if (!result.objective) {
+    return {};
+  }
+  if (!step.cost) {
+    return {"-", "-"};
+  }
+  return {host::with_digits(step.cost->cost, 6), fixed(100 * step.cost->gap(), 2)};
 }
 
 /// The time budget of the step with this id, if it has no other budget that could end it.
@@ -73,22 +93,21 @@ void print_budgets(std::FILE* to, const host::Config& config, const host::RunRes
 }
 
 void print_table(std::FILE* to, const host::RunResult& result) {
-  Table table({{"step", false, 14},
-               {"plugin", false, 12},
-               {"status", false, 12},
-               {"length_km", true, 9},
-               {"points", true, 6},
-               {"turn_d", true, 6},
-               {"radius_m", true, 8},
-               {"climb_d", true, 7},
-               {"clear_m", true, 8},
-               {"ground_m", true, 8},
-               {"time_ms", true, 8}});
+  std::vector<Table::Column> columns{
+      {"step", false, 14},  {"plugin", false, 12}, {"status", false, 12}, {"length_km", true, 9},
+      {"points", true, 6},  {"turn_d", true, 6},   {"radius_m", true, 8}, {"climb_d", true, 7},
+      {"clear_m", true, 8}, {"ground_m", true, 8}, {"time_ms", true, 8}};
+  if (result.objective) {
+    const std::string unit = result.objective->unit();
+    columns.push_back({"cost" + (unit.empty() ? "" : " (" + unit + ")"), true, 8});
+    columns.push_back({"gap_%", true, 6});
+  }
+  Table table(columns);
   for (const host::StepResult& step : result.steps) {
     const bool flown =
         result.flight && step.verb == host::Verb::fly && &step == &result.steps.back();
     add_row(table, step.id, step.plugin, step.accepted && !flown ? "accepted" : name(step.status),
-            flown ? result.flight->measures : step.measures, step.time_s);
+            flown ? result.flight->measures : step.measures, step.time_s, costs_of(result, step));
   }
   table.print(to);
   if (result.flight) {

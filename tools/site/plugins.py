@@ -4,7 +4,7 @@ import json
 import re
 import subprocess
 
-KINDS = ["environment", "constraint", "planner", "local_planner", "smoother", "tuner"]
+KINDS = ["environment", "constraint", "planner", "local_planner", "smoother", "objective", "tuner"]
 TRAITS = {
     "complete": "finds a route of its search space whenever there is one",
     "optimal": "and the shortest of them",
@@ -15,6 +15,7 @@ TRAITS = {
     "spatial": "plans in three dimensions",
     "loiters": "plans from and to loiter circles",
     "avoids_obstacles": "no leg through a known obstacle",
+    "objectives": "minimises any objective that does not depend on the time",
 }
 
 
@@ -81,8 +82,9 @@ def pages(root, program, problems):
     for kind in KINDS:
         names = {name: sentence for (of, name), sentence in here.items() if of == kind}
         for name, sentence in names.items():
-            description = next(found for found in [asked(program, "describe", name)]
-                               if found["kind"] == kind)
+            found = asked(program, "describe", name)  # a list where kinds share the name
+            description = next(one for one in (found if isinstance(found, list) else [found])
+                               if one["kind"] == kind)
             if (root / "plugins" / kind / name).is_dir():
                 yield of_readme(root, kind, name, sentence, description, problems)
             else:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/config/config.hpp"
 
+#include "host/base/built_in.hpp"
 #include "host/base/input.hpp"
-#include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/mission_key.hpp"
 #include "host/config/overrides.hpp"
@@ -113,12 +113,15 @@ bool find_scenario(Config& config, Checker& checker) {
 }
 }  // namespace
 
+const ObjectiveEntry* Config::objective() const {
+  const auto& given = pipeline.objective ? pipeline.objective : scenario.objective;
+  return given && given->plugin != "length" ? &*given : nullptr;
+}
+
 const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string_view name) {
-  if (kind == "environment") {
-    for (const PluginEntry& entry : built_in_environments()) {
-      if (name == entry.name) {
-        return entry;
-      }
+  for (const PluginEntry& entry : built_in_plugins()) {
+    if (kind == entry.kind && name == entry.name) {
+      return entry;
     }
   }
   return registry.get(kind, name);
@@ -170,6 +173,10 @@ Config pipeline_config(Config config, const std::shared_ptr<Registry>& shared) {
     check_scenario(checker, config.scenario, config.scenario_tree);
   }
   check_constraints(checker, config.pipeline.constraints, config.pipeline_tree);
+  if (config.pipeline.objective) {
+    check_objective(checker, *config.pipeline.objective, *config.pipeline_tree.find("objective"),
+                    "objective");
+  }
   check_steps(checker, config);
   checker.finish();
   return config;

@@ -37,6 +37,9 @@ struct Config {
   /// Nothing is planned in this world: its volume stays as given, and ends may lie outside it.
   bool is_only_judged = false;
   std::vector<LonLat> about;  ///< positions of the mission that is judged
+
+  /// What routes have least of: the pipeline's objective, else the scenario's; null: length.
+  const ObjectiveEntry* objective() const;
 };
 
 /// Reads and checks both files; throws ConfigError with every problem of both. Reuses `shared` if

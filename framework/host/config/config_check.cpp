@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "altiplan/attributed.hpp"
+#include "host/base/built_in.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/base/shapes.hpp"
 #include "host/config/yaml.hpp"
 
 namespace altiplan::host {
@@ -27,15 +27,14 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
     throw;
   } catch (const Error& error) {
     std::string built_in;
-    if (kind == "environment") {
-      built_in = "; built in: ";
-      std::vector<std::string> names;
-      for (const PluginEntry& shape : built_in_environments()) {
-        built_in += names.empty() ? "" : ", ";
-        built_in += names.emplace_back(shape.name);
+    std::vector<std::string> names;
+    for (const PluginEntry& known : built_in_plugins()) {
+      if (kind == known.kind) {
+        built_in += names.empty() ? "; built in: " : ", ";
+        built_in += names.emplace_back(known.name);
       }
-      built_in += did_you_mean(name, names);
     }
+    built_in += did_you_mean(name, names);
     problem(where, key, error.what() + built_in);
     return;
   }
@@ -101,6 +100,22 @@ std::string Ids::free_id(const std::string& name) {
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string near = nearest_name(word, candidates);
   return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+void check_objective(Checker& checker, const ObjectiveEntry& entry, const Value& tree,
+                     const std::string& path) {
+  const std::string inner = path + "." + entry.plugin;
+  checker.check_plugin("objective", entry.plugin, entry.parameters, place_of(tree, entry.plugin),
+                       inner, path);
+  if (entry.plugin == "weighted") {
+    WeightedParams weighted;
+    bind(weighted, &entry.parameters);  // its problems are reported above
+    for (std::size_t i = 0; i < weighted.of.size(); ++i) {
+      const ObjectiveTerm& term = weighted.of[i];
+      check_objective(checker, {term.plugin, term.parameters},
+                      entry.parameters.find("of")->items[i], item(inner + ".of", i));
+    }
+  }
 }
 
 void check_constraints(Checker& checker, const std::vector<ConstraintEntry>& entries,

@@ -63,6 +63,9 @@ Location place_of(const Value& map, std::string_view key);
 /// "; did you mean 'x'?", or "".
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
+/// Checks an objective and those that it adds up; `path` is that of its map.
+void check_objective(Checker& checker, const ObjectiveEntry& entry, const Value& tree,
+                     const std::string& path);
 void check_constraints(Checker& checker, const std::vector<ConstraintEntry>& entries,
                        const Value& tree);
 /// Checks layers, moving obstacles, points and events; assigns missing ids.

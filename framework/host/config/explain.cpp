@@ -120,6 +120,16 @@ std::vector<Explained> explain(const Config& config) {
                  item(path, i) + "." + entry.plugin);
     }
   }
+  if (config.scenario.objective) {
+    add_plugin(all, config, "objective", config.scenario.objective->plugin,
+               config.scenario.objective->parameters,
+               "scenario.objective." + config.scenario.objective->plugin);
+  }
+  if (config.pipeline.objective) {
+    add_plugin(all, config, "objective", config.pipeline.objective->plugin,
+               config.pipeline.objective->parameters,
+               "objective." + config.pipeline.objective->plugin);
+  }
   add_file<PipelineFile>(all, config.pipeline_tree, "");
   for (std::size_t i = 0; i < config.steps.size(); ++i) {
     const StepEntry& step = config.steps[i];

@@ -74,6 +74,8 @@ void PipelineFile::describe(Fields& f) {
   f("seed", seed).at_least(0).doc("seed of all random numbers; --seed overrides it");
   f("plugins", plugins).doc("additional folders of plugin libraries");
   f("constraints", constraints).doc("constraints on routes and tracks");
+  f("objective", objective)
+      .doc("what routes have least of, instead of the scenario's objective; default: that");
   f("steps", steps).min_items(1).required().doc("steps, run in order");
 }
 }  // namespace altiplan::host

@@ -65,6 +65,7 @@ struct PipelineFile {
   std::int64_t seed = 0;
   std::vector<Path> plugins;
   std::vector<ConstraintEntry> constraints;
+  std::optional<ObjectiveEntry> objective;
   std::vector<Value> steps;  ///< step maps, bound by the configuration
   void describe(Fields& f);
 };

@@ -181,6 +181,9 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
   check_removed(checker, scenario, tree);
   check_points(checker, scenario, tree);
   check_constraints(checker, scenario.constraints, tree);
+  if (scenario.objective) {
+    check_objective(checker, *scenario.objective, *tree.find("objective"), "objective");
+  }
   check_body(checker, scenario, tree);
   if (scenario.start_time && !formats::parse_iso_time(*scenario.start_time)) {
     checker.problem(

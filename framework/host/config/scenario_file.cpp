@@ -15,6 +15,10 @@ void ConstraintEntry::describe(Fields& f) {
   f.plugin("constraint", plugin, parameters).doc("a constraint on routes and tracks").required();
 }
 
+void ObjectiveEntry::describe(Fields& f) {
+  f.plugin("objective", plugin, parameters).doc("what routes have least of").required();
+}
+
 void PointEntry::describe(Fields& f) { f.point(point).required(); }
 
 namespace {
@@ -316,5 +320,7 @@ void ScenarioFile::describe(Fields& f) {
   f("moving", moving).doc("moving obstacles");
   f("events", events).doc("changes during the flight");
   f("constraints", constraints).doc("constraints that apply to every pipeline");
+  f("objective", objective)
+      .doc("what routes have least of, unless the pipeline says so; default: length");
 }
 }  // namespace altiplan::host

@@ -26,6 +26,13 @@ struct ConstraintEntry {
   void describe(Fields& f);
 };
 
+/// `objective: {exposure: {…}}`.
+struct ObjectiveEntry {
+  std::string plugin;
+  Value parameters;
+  void describe(Fields& f);
+};
+
 struct PointEntry {
   Point point;
   void describe(Fields& f);
@@ -221,6 +228,7 @@ struct ScenarioFile {
   std::vector<MovingEntry> moving;
   std::vector<EventEntry> events;
   std::vector<ConstraintEntry> constraints;
+  std::optional<ObjectiveEntry> objective;
   void describe(Fields& f);
 };
 

@@ -30,9 +30,10 @@ StepEntry bind_step(Checker& checker, const Value& tree, const std::string& path
   return step;
 }
 
-void check_plugins(Checker& checker, Registry& registry, const StepEntry& step, const Value& tree);
+void check_plugins(Checker& checker, const Config& config, const StepEntry& step,
+                   const Value& tree);
 
-void check_replan(Checker& checker, Registry& registry, const StepEntry& step,
+void check_replan(Checker& checker, const Config& config, const StepEntry& step,
                   const std::set<std::string>& plans, const Value& tree) {
   const Value& replan = step.fly.replan;
   const std::string key = step.path + ".replan";
@@ -58,11 +59,38 @@ void check_replan(Checker& checker, Registry& registry, const StepEntry& step,
   if (!planner.alternatives.empty()) {
     checker.problem(place_of(replan, "else"), key + ".else", "a replan has no alternatives");
   }
-  check_plugins(checker, registry, planner, replan);
+  check_plugins(checker, config, planner, replan);
+}
+
+/// Refuses a plan step that minimises length alone where the files ask for another objective.
+void check_minimises(Checker& checker, const Config& config, const StepEntry& step,
+                     const Value& tree) {
+  const ObjectiveEntry* objective = config.objective();
+  if (objective == nullptr || step.verb != Verb::plan || step.plugin.empty()) {
+    return;
+  }
+  Traits traits;
+  const std::string kind = kind_of_step(*config.registry, step);
+  if (kind == "planner") {
+    try {
+      traits = config.registry->get(kind, step.plugin).planner(&step.with)->traits();
+    } catch (const Error&) {
+      return;  // its parameters are refused
+    }
+  }
+  if (!traits.objectives) {
+    checker.problem(place_of(tree, "plan"), step.path + ".plan",
+                    "the " + kind + " '" + step.plugin +
+                        "' minimises length alone, not the objective '" + objective->plugin +
+                        "': use one with the trait `objectives`, such as astar, or objective: "
+                        "{length: {}}");
+  }
 }
 
 /// Checks the step's plugin and smoothers, with their parameters.
-void check_plugins(Checker& checker, Registry& registry, const StepEntry& step, const Value& tree) {
+void check_plugins(Checker& checker, const Config& config, const StepEntry& step,
+                   const Value& tree) {
+  Registry& registry = *config.registry;
   if (step.plugin.empty()) {
     return;  // already reported
   }
@@ -75,6 +103,7 @@ void check_plugins(Checker& checker, Registry& registry, const StepEntry& step, 
     checker.check_plugin(kind_of_step(registry, step), step.plugin, step.with,
                          place_of(tree, name(step.verb)), step.path + ".with",
                          step.path + "." + name(step.verb));
+    check_minimises(checker, config, step, tree);
   }
   for (std::size_t i = 0; i < step.fly.smooth.size(); ++i) {
     const SmootherEntry& smoother = step.fly.smooth[i];
@@ -128,8 +157,8 @@ class StepCheck {
                        "there is no earlier step '" + *step.from + "'" +
                            did_you_mean(*step.from, {earlier_.begin(), earlier_.end()}));
     }
-    check_plugins(checker_, *config_.registry, step, tree);
-    check_replan(checker_, *config_.registry, step, plans_, tree);
+    check_plugins(checker_, config_, step, tree);
+    check_replan(checker_, config_, step, plans_, tree);
     const bool given = tree.find("id") != nullptr;
     std::string id = given ? step.id : ids_.free_id(step.id);
     if (!ids_.insert(id).second) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <set>
 
+#include "host/base/built_in.hpp"
 #include "host/base/shapes.hpp"
 #include "host/config/config.hpp"
 #include "host/describe/describe.hpp"
@@ -42,8 +43,8 @@ Choices choices_of(Registry& registry) {
         names.insert(name);
       }
     }
-    if (kind == "environment") {
-      for (const PluginEntry& entry : built_in_environments()) {
+    for (const PluginEntry& entry : built_in_plugins()) {
+      if (kind == entry.kind) {
         names.insert(entry.name);
       }
     }

@@ -6,14 +6,14 @@
 #include <charconv>
 #include <cmath>
 
-#include "host/base/shapes.hpp"
+#include "host/base/built_in.hpp"
 #include "host/config/config.hpp"
 
 namespace altiplan::host {
 namespace {
 
-constexpr std::array<const char*, 6> kKinds = {"environment",   "constraint", "planner",
-                                               "local_planner", "smoother",   "tuner"};
+constexpr std::array<const char*, 7> kKinds = {
+    "environment", "constraint", "planner", "local_planner", "smoother", "tuner", "objective"};
 
 std::string number_text(double number) {
   std::array<char, 32> buffer;
@@ -157,7 +157,8 @@ std::vector<std::pair<const char*, bool>> listed(const Traits& traits) {
           {"planar", traits.planar},
           {"spatial", traits.spatial},
           {"loiters", traits.loiters},
-          {"avoids_obstacles", traits.avoids_obstacles}};
+          {"avoids_obstacles", traits.avoids_obstacles},
+          {"objectives", traits.objectives}};
 }
 
 std::optional<Traits> traits_of(const PluginEntry& entry) {
@@ -193,7 +194,7 @@ Description description_of(const PluginEntry& entry, const Library* library) {
 
 std::vector<Description> describe_plugin(Registry& registry, std::string_view name) {
   std::vector<Description> found;
-  for (const PluginEntry& entry : built_in_environments()) {
+  for (const PluginEntry& entry : built_in_plugins()) {
     if (name == entry.name) {
       found.push_back(description_of(entry, nullptr));
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/error.hpp"
+#include "host/base/built_in.hpp"
 #include "host/base/in_child.hpp"
 #include "host/base/machine_fault.hpp"
-#include "host/base/shapes.hpp"
 #include "host/describe/describe.hpp"
 
 namespace altiplan::host {
@@ -28,7 +28,7 @@ std::vector<Library> examine_all(Registry& registry) {
 
 std::vector<ListedPlugin> listed_plugins(const std::vector<Library>& libraries) {
   std::vector<ListedPlugin> all;
-  for (const PluginEntry& entry : built_in_environments()) {
+  for (const PluginEntry& entry : built_in_plugins()) {
     all.push_back({entry.kind, entry.name, std::string(entry.sentence) + " (built in)"});
   }
   for (const Library& library : libraries) {
@@ -71,7 +71,7 @@ Json plugins_json(const Registry& registry, const std::vector<Library>& librarie
   for (const std::filesystem::path& folder : registry.folders()) {
     json["folders"].push_back(folder.string());
   }
-  for (const PluginEntry& entry : built_in_environments()) {
+  for (const PluginEntry& entry : built_in_plugins()) {
     json["built_in"].push_back(
         {{"kind", entry.kind}, {"name", entry.name}, {"sentence", entry.sentence}});
   }

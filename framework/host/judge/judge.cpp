@@ -113,6 +113,24 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
   return result;
 }
 
+Cost price(const Route& route, const Request& request, const std::vector<Goal>& via) {
+  Cost cost{cost_of(route, request), 0};
+  std::vector<Goal> goals = via;
+  goals.push_back(request.goal);
+  Request section = request;
+  double tolerance = 0;  // of the section's start
+  for (const Goal& goal : goals) {
+    section.goal = goal;
+    if (tolerance == 0 || !request.objective) {
+      cost.bound += std::max(0.0, least_cost(section) - tolerance);
+    }
+    section.start.position = goal.position;
+    section.start.loiter = goal.loiter;
+    tolerance = goal.tolerance_m;
+  }
+  return cost;
+}
+
 std::string verdict_sentence(const CheckResult& result, const Violation& shown) {
   const std::size_t count = result.violations.size();
   return "the judge found " + std::to_string(count) + " violation" +

@@ -14,6 +14,16 @@ namespace altiplan::host {
 /// and its message names the layer.
 CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via);
 
+/// What a route costs by the request's objective, and a lower bound of the cost of all routes that
+/// pass the via points.
+struct Cost {
+  double cost = 0;
+  double bound = 0;
+  /// By how much the route may cost too much, as a share of the bound; infinite if that is 0.
+  double gap() const { return cost > bound ? (cost - bound) / bound : 0; }
+};
+Cost price(const Route& route, const Request& request, const std::vector<Goal>& via);
+
 /// Index of the waypoint at each via point, in order; shorter than `via` if one is not passed.
 std::vector<std::size_t> via_indices(const Route& route, const std::vector<Goal>& via);
 

@@ -13,6 +13,7 @@
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/mission/coverage.hpp"
+#include "host/mission/objective.hpp"
 #include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
 #include "host/mission/volume.hpp"
@@ -378,6 +379,10 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   request.random = site.random;
   mission.known = known_part(truth);
   request.world = std::make_shared<const World>(mission.known);
+  if (config.objective() != nullptr) {
+    calling("the objective '" + config.objective()->plugin + "': its constructor");
+    request.objective = objective_of(config, site);
+  }
   const std::vector<NamedConstraint> constraints = constraints_of(config, scale_error, calling);
   mission.track_request = request;
   apply_constraints(request, constraints, AppliesTo::route);

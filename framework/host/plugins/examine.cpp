@@ -17,8 +17,8 @@
 namespace altiplan::host {
 namespace {
 
-constexpr std::array<std::string_view, 6> kKinds = {"environment",   "constraint", "planner",
-                                                    "local_planner", "smoother",   "tuner"};
+constexpr std::array<std::string_view, 7> kKinds = {
+    "environment", "constraint", "planner", "local_planner", "smoother", "tuner", "objective"};
 
 template <std::size_t N>
 bool ends_with_nul(const char (&text)[N]) {

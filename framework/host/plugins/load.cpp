@@ -114,7 +114,8 @@ bool has_maker(const PluginEntry& entry) {
           (kind == "planner" && entry.planner != nullptr) ||
           (kind == "local_planner" && entry.local_planner != nullptr) ||
           (kind == "smoother" && entry.smoother != nullptr) ||
-          (kind == "tuner" && entry.tuner != nullptr));
+          (kind == "tuner" && entry.tuner != nullptr) ||
+          (kind == "objective" && entry.objective != nullptr));
 }
 
 /// Checks that the parameters have valid names: damaged data yields invalid ones.

@@ -14,6 +14,7 @@
 #include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
 #include "altiplan/local_planner.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
 #include "altiplan/smoother.hpp"

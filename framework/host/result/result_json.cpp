@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
+#include "host/base/built_in.hpp"
 #include "host/base/sha256.hpp"
 
 namespace altiplan::host {
@@ -155,7 +157,7 @@ std::vector<std::string> set_texts(const Json& overrides) {
 }
 
 Json plugins_json(const Config& config) {
-  std::set<std::pair<std::string_view, std::string_view>> used;
+  std::set<std::pair<std::string, std::string>> used;
   const auto use = [&](std::string_view kind, std::string_view plugin_name) {
     used.emplace(kind, plugin_name);
   };
@@ -171,6 +173,20 @@ Json plugins_json(const Config& config) {
     for (const ConstraintEntry& entry : *entries) {
       use("constraint", entry.plugin);
     }
+  }
+  const std::function<void(const std::string&, const Value&)> use_objective =
+      [&](const std::string& name, const Value& parameters) {
+        use("objective", name);
+        if (name == "weighted") {
+          WeightedParams weighted;
+          bind(weighted, &parameters);
+          for (const ObjectiveTerm& term : weighted.of) {
+            use_objective(term.plugin, term.parameters);
+          }
+        }
+      };
+  if (const ObjectiveEntry* objective = config.objective()) {
+    use_objective(objective->plugin, objective->parameters);
   }
   const auto use_step = [&](const StepEntry& step) {
     for (const char* kind : {"planner", "local_planner", "smoother"}) {
@@ -232,6 +248,11 @@ Json to_json(const Measures& m) {
           {"duration_s", number(m.duration_s)}};
 }
 
+Json to_json(const std::optional<Cost>& cost) {
+  return {{"cost", cost ? number(cost->cost) : Json(nullptr)},
+          {"bound", cost ? number(cost->bound) : Json(nullptr)}};
+}
+
 Json to_json(const StepResult& step) {
   Json json;
   json["id"] = step.id;
@@ -251,6 +272,7 @@ Json to_json(const StepResult& step) {
   json["legs"] = legs_json(step.route);
   json["metrics"] = step.measures ? to_json(*step.measures) : Json(nullptr);
   json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
+  json.update(to_json(step.cost));
   return json;
 }
 
@@ -285,6 +307,7 @@ Json result_json(const Config& config, const RunResult& result) {
   json["route_lonlat"] = accepted ? lonlat_json(accepted->route, result.frame) : Json(nullptr);
   json["metrics"] = run_metrics(result);
   json["check"] = accepted ? to_json(*accepted->check) : Json(nullptr);
+  json.update(to_json(accepted ? accepted->cost : std::nullopt));
   json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);
   json["trace"] = result.trace ? Json(*result.trace) : Json(nullptr);
   return json;

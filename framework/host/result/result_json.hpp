@@ -24,6 +24,8 @@ Json plugins_json(const Config& config);
 Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
+/// {"cost": …, "bound": …}
+Json to_json(const std::optional<Cost>& cost);
 /// One of `steps`.
 Json to_json(const StepResult& step);
 

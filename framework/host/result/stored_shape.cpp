@@ -26,11 +26,23 @@ struct Key {
 };
 
 constexpr Key kResult[] = {
-    {"pipeline", kText},         {"scenario", kText},      {"files", kList},
-    {"overrides", kObject},      {"seed", kSeed},          {"status", kStatus},
-    {"message", kText},          {"steps", kList},         {"route", kList | kNull},
-    {"legs", kList | kNull},     {"metrics", kObject},     {"check", kObject | kNull},
-    {"flight", kObject | kNull}, {"trace", kText | kNull}, {"folder", kText},
+    {"pipeline", kText},
+    {"scenario", kText},
+    {"files", kList},
+    {"overrides", kObject},
+    {"seed", kSeed},
+    {"status", kStatus},
+    {"message", kText},
+    {"steps", kList},
+    {"route", kList | kNull},
+    {"legs", kList | kNull},
+    {"metrics", kObject},
+    {"check", kObject | kNull},
+    {"flight", kObject | kNull},
+    {"trace", kText | kNull},
+    {"folder", kText},
+    {"cost", kNumber | kNull},
+    {"bound", kNumber | kNull},
 };
 constexpr Key kFile[] = {{"path", kText}, {"sha256", kText}};
 constexpr Key kStep[] = {
@@ -45,6 +57,8 @@ constexpr Key kStep[] = {
     {"legs", kList | kNull},
     {"metrics", kObject | kNull},
     {"check", kObject | kNull},
+    {"cost", kNumber | kNull},
+    {"bound", kNumber | kNull},
 };
 constexpr Key kFlight[] = {
     {"status", kStatus},

@@ -39,6 +39,7 @@ RunResult Run::operator()() {
     options_.on_mission(mission_);
   }
   result_.frame = mission_.truth.frame();
+  result_.objective = mission_.request.objective;
   result_.setup_time_s = mission_.setup_time_s;
   result_.notes = mission_.notes;
   result_.warnings.insert(result_.warnings.end(), mission_.warnings.begin(),
@@ -92,6 +93,7 @@ void Run::take_route(const Route& route) {
   given.route = route;
   given.measures = measure(route, mission_.request);
   given.check = judge(route, mission_.request, mission_.via);
+  given.cost = price(route, mission_.request, mission_.via);
   result_.steps.push_back(std::move(given));
   result_.accepted = 0;
 }

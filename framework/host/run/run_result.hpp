@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct StepResult {
   Route route;
   std::optional<Measures> measures;
   std::optional<CheckResult> check;
+  std::optional<Cost> cost;  ///< of a route that is judged
 };
 
 /// Result of a run; grows while it runs.
@@ -41,6 +43,7 @@ struct RunResult {
   std::optional<std::size_t> accepted;  ///< index of the step whose route is accepted
   std::optional<FlightResult> flight;
   Frame frame;
+  std::shared_ptr<const Objective> objective;  ///< null: length
   double setup_time_s = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;

@@ -53,5 +53,6 @@ struct Traits {
   bool loiters = false;          ///< plans from and to loiter circles
   bool avoids_obstacles = true;  ///< no leg through a known one; a local planner without it may
                                  ///< cross one, and the judge reports that
+  bool objectives = false;       ///< minimises any objective that does not depend on the time
 };
 }  // namespace altiplan

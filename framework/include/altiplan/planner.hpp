@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "altiplan/plan_result.hpp"
 #include "altiplan/request.hpp"
@@ -32,6 +33,10 @@ class ALTIPLAN_API Session {
 /// The `invalid_problem` result if start or goal violate a constraint; its reason says which. The
 /// public functions check this before they call a planner; a session checks it at its updates.
 ALTIPLAN_API std::optional<PlanResult> impossible_ends(const Request& request);
+
+/// Why a planner with these traits cannot minimise the objective, as the rest of a sentence
+/// ("minimises length alone …"); "" if it can. The public functions check this too.
+ALTIPLAN_API std::string objective_problem(const Objective& objective, const Traits& traits);
 
 /// Plans a whole route. Constructed from its parameters; const and shareable.
 ///

@@ -9,8 +9,8 @@
 ///     ALTIPLAN_PLUGIN(Planner, "astar", AStar, Params, "A* on a lattice …")
 ///
 /// the interface, the name in YAML, the class (constructible from its parameters; an environment
-/// from parameters and Site), the parameter struct (with `void describe(altiplan::Fields&)`), and a
-/// sentence for `altiplan plugins`.
+/// and an objective from parameters and Site), the parameter struct (with `void
+/// describe(altiplan::Fields&)`), and a sentence for `altiplan plugins`.
 
 extern "C" {
 extern const altiplan::PluginEntry* const __start_altiplan_entries

@@ -19,6 +19,7 @@ class Planner;
 class LocalPlanner;
 class Smoother;
 class Tuner;
+class Objective;
 struct Site;
 
 /// Self-description of a library, read from its file before any of its code runs: plain data in the
@@ -122,6 +123,7 @@ struct PluginEntry {
   std::unique_ptr<LocalPlanner> (*local_planner)(const Value* parameters);
   std::unique_ptr<Smoother> (*smoother)(const Value* parameters);
   std::unique_ptr<Tuner> (*tuner)(const Value* parameters);
+  std::unique_ptr<Objective> (*objective)(const Value* parameters, const Site& site);
 };
 
 /// The only symbol that a plugin library exports.
@@ -172,6 +174,8 @@ template <>
 inline constexpr const char* kKind<Smoother> = "smoother";
 template <>
 inline constexpr const char* kKind<Tuner> = "tuner";
+template <>
+inline constexpr const char* kKind<Objective> = "objective";
 
 template <class Interface, class Class, class Params>
 constexpr PluginEntry make_entry(const char* name, const char* sentence) {
@@ -193,8 +197,10 @@ constexpr PluginEntry make_entry(const char* name, const char* sentence) {
     entry.local_planner = &make<Interface, Class, Params>;
   } else if constexpr (std::is_same_v<Interface, Smoother>) {
     entry.smoother = &make<Interface, Class, Params>;
-  } else {
+  } else if constexpr (std::is_same_v<Interface, Tuner>) {
     entry.tuner = &make<Interface, Class, Params>;
+  } else {
+    entry.objective = &make<Interface, Class, Params, Site>;
   }
   return entry;
 }

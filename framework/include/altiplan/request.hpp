@@ -7,6 +7,7 @@
 
 #include "altiplan/budget.hpp"
 #include "altiplan/constraint.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/random.hpp"
 #include "altiplan/trace.hpp"
 #include "altiplan/vehicle.hpp"
@@ -38,8 +39,9 @@ struct ALTIPLAN_API Request {
   Wind wind;
   Limits limits;
   std::vector<NamedConstraint> constraints;
-  Box volume;                     ///< bounded
-  std::optional<double> level_m;  ///< level flight: z of every waypoint
+  std::shared_ptr<const Objective> objective;  ///< what routes have least of; null: length
+  Box volume;                                  ///< bounded
+  std::optional<double> level_m;               ///< level flight: z of every waypoint
   Budget budget;
   int threads = 1;
   RandomStream random;

@@ -8,7 +8,8 @@ namespace altiplan {
 
 /// Improves a route and keeps its ends.
 /// Contract: 1. First and last points stay. 2. The worst excess of each constraint does not grow; a
-/// valid route stays valid. 3. Straight routes of one or two points are returned unchanged.
+/// valid route stays valid. 3. Straight routes of one or two points are returned unchanged. 4.
+/// Under an objective a valid route's cost does not grow: smooth sees to it.
 class ALTIPLAN_API Smoother {
  public:
   virtual ~Smoother();

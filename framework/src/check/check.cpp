@@ -2,6 +2,7 @@
 #include "altiplan/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "leg_judge.hpp"
@@ -123,6 +124,11 @@ CheckResult check(const Route& route, const Request& request) {
     }
     for (Violation& violation : leg_violations(before, leg, request, i)) {
       found.push_back(std::move(violation));
+    }
+    if (request.objective && !std::isfinite(cost_of(leg, request))) {
+      found.push_back({"objective", i, kInfinity, kInfinity,
+                       "the objective has no cost for the leg: part of it lies where no value is "
+                       "given"});
     }
     before = onward(before, leg);
   }

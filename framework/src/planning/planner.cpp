@@ -42,6 +42,14 @@ std::optional<PlanResult> settled(const Request& request, const Planner& planner
                       " is a loiter circle, which this planner does not support: use one with the "
                       "trait `loiters`, such as hybrid_astar";
   }
+  if (!result && request.objective) {
+    if (const std::string why = objective_problem(*request.objective, planner.traits());
+        !why.empty()) {
+      result.emplace();
+      result->status = PlanStatus::invalid_problem;
+      result->message = "this planner " + why;
+    }
+  }
   if (!result && is_at_goal(request)) {
     const State& start = request.start;
     result.emplace();
@@ -77,6 +85,14 @@ class FreshSession final : public Session {
   PlanResult result_;
 };
 }  // namespace
+
+std::string objective_problem(const Objective& objective, const Traits& traits) {
+  if (!traits.objectives) {
+    return "minimises length alone, not an objective: use one with the trait `objectives`, such as "
+           "astar";
+  }
+  return objective.traits().time ? "minimises no objective that depends on the time" : "";
+}
 
 std::optional<PlanResult> impossible_ends(const Request& request) {
   for (const auto& [end, problem] : {std::pair(Reason::start, start_problem(request)),

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
+#include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
 #include "contract.hpp"
 
@@ -19,6 +21,20 @@ PlanResult Smoother::do_smooth_turns(const Route& route, const Request&) const {
   result.route = route;
   return result;
 }
+
+namespace {
+/// The route as it was, where it is valid and the smoothed one costs more.
+PlanResult without_loss(PlanResult result, const Route& before, const Request& request) {
+  const double cost = cost_of(before, request);
+  if (result.status != PlanStatus::solved || !costs_more(cost_of(result.route, request), cost) ||
+      !check(before, request).ok()) {
+    return result;
+  }
+  result.route = before;
+  result.message = "left unchanged: every change found would cost more";
+  return result;
+}
+}  // namespace
 
 PlanResult Smoother::smooth(const Route& route, const Request& request) const {
   if (route.is_straight() && route.size() <= 2) {
@@ -46,6 +62,6 @@ PlanResult Smoother::smooth(const Route& route, const Request& request) const {
         std::string("the smoother violated the contract of its interface: ") + kMalformedLeg,
         Reason::contract);
   }
-  return result;
+  return request.objective ? without_loss(std::move(result), route, request) : result;
 }
 }  // namespace altiplan

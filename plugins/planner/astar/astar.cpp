@@ -75,7 +75,8 @@ class AStar final : public Planner {
 
   /// The fastest search that the problem allows.
   static By quickest(const SearchSettings& settings, const Request& request) {
-    const bool is_length = settings.cost.length_alone() && settings.cost.length == 1;
+    const bool is_length =
+        settings.cost.length_alone() && settings.cost.length == 1 && !request.objective;
     if (is_length && settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request)) {
       return By::cells;
     }

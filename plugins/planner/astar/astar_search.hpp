@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -79,9 +80,13 @@ class Search : kit::GoalSearch {
           (link.length > 0 && !rules_.any_leg_ok(request_.before_start(), start_, there))) {
         continue;
       }
+      const double g = link_cost(start_, there, link.length);
+      if (g == kInfinity) {
+        continue;
+      }
       at_start_ = link.length == 0;
       const std::uint32_t index = lattice_.index(link.cell);
-      reach(index, link_cost(start_, there, link.length), link.length, kit::kHere);
+      reach(index, g, link.length, kit::kHere);
       push(index, link.cell, there);
     }
   }
@@ -124,12 +129,16 @@ class Search : kit::GoalSearch {
       return Cell{c[0] + o[0], c[1] + o[1], c[2] + o[2]};
     };
     kit::DirectionMask better = 0;
+    std::array<double, kit::kDirections> g_to;  // of the better ones
     for (kit::DirectionMask open = rules_.candidates(c, node.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
       const Node& successor = nodes_.at(std::uint32_t(index + lattice_.stride(d)), kFresh);
+      if (successor.closed) {
+        continue;
+      }
       const Vec3 there = lattice_.position(cell_at(d));
-      const double g = node.g + step_cost(d, here, there);
-      const bool is_better = !successor.closed && g < successor.g &&
+      const double g = g_to[std::size_t(d)] = node.g + step_cost(d, here, there);
+      const bool is_better = g < successor.g &&
                              !too_long(length_here + lattice_.step_length(d), there) &&
                              !exceeds_incumbent(g, there);
       better |= kit::DirectionMask(is_better) << d;
@@ -143,7 +152,7 @@ class Search : kit::GoalSearch {
         continue;
       }
       const auto next = std::uint32_t(index + lattice_.stride(d));
-      reach(next, node.g + step_cost(d, here, there), length_here + lattice_.step_length(d),
+      reach(next, g_to[std::size_t(d)], length_here + lattice_.step_length(d),
             rules_.step_after(node.in, d));
       push(next, to, there);
     }

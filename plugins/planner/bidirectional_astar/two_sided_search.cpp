@@ -19,11 +19,16 @@ void TwoSidedSearch::begin() {
                              : rules_.any_leg_ok(std::nullopt, there, end)))) {
         continue;
       }
+      const bool reversed = side == backward && request_.objective;
+      const double g =
+          reversed ? link_cost(there, end, link.length) : link_cost(end, there, link.length);
+      if (g == kInfinity) {
+        continue;
+      }
       centred_[side] = link.length == 0;
       nodes_.at(lattice_.index(link.cell), kFresh);
       push(side, link.cell, there,
-           {link_cost(end, there, link.length), link.length, lattice_.index(link.cell), kNone,
-            kNone, kit::kHere});
+           {g, link.length, lattice_.index(link.cell), kNone, kNone, kit::kHere});
     }
   }
 }

@@ -26,7 +26,8 @@ class TwoSidedSearch : kit::LatticeSearch {
   TwoSidedSearch(const Request& request, const kit::SearchSettings& settings,
                  const kit::Lattice& lattice, double best_cost, bool by_heading, Memory& memory)
       : LatticeSearch(request, settings, lattice, best_cost),
-        to_start_(settings, lattice, request.start.position, 0, costs_.min_per_metre()),
+        to_start_(request, settings, lattice, request.start.position, 0, costs_.min_per_metre(),
+                  true),
         by_heading_(by_heading),
         quantum_(quantum()),
         nodes_(memory.nodes),
@@ -245,13 +246,14 @@ class TwoSidedSearch : kit::LatticeSearch {
     const Cell o = kit::offset(d);
     const Cell to = {c[0] + sign * o[0], c[1] + sign * o[1], c[2] + sign * o[2]};
     const Vec3 there = lattice_.position(to);
-    Arrival next = {arrival.g + step_cost(d, here, there),
+    const bool reversed = side == backward && request_.objective;
+    Arrival next = {arrival.g + (reversed ? step_cost(d, there, here) : step_cost(d, here, there)),
                     arrival.length + lattice_.step_length(d),
                     std::uint32_t(std::int64_t(arrival.cell) + sign * lattice_.stride(d)),
                     index,
                     kNone,
                     std::uint8_t(step)};
-    if (is_too_long(side, next.length, there) ||
+    if (next.g == kInfinity || is_too_long(side, next.length, there) ||
         !is_better(settings_.weight_g * (next.g + estimate(side).at_least(there)))) {
       return;
     }

@@ -11,7 +11,8 @@
 // Deviations: a cell that its parent does not see is queued again, with its length via its best
 //   closed neighbour; a leg is checked against every constraint of the judge; where it violates a
 //   limit at the parent's parent, the cell is reached via the expanded cell; path lengths are sums
-//   of integers (kit/any_angle.hpp); an f that falls along a step is replaced by the last f.
+//   of integers (kit/any_angle.hpp); an f that falls along a step is replaced by the last f;
+//   under an objective kit::CostedTheta searches, with real costs.
 // Symbols: g length of the path from the start, h straight line to the goal, f = g + h.
 #include "altiplan/kit/any_angle/any_angle_planner.hpp"
 #include "altiplan/planner.hpp"

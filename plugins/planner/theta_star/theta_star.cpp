@@ -11,7 +11,7 @@
 // Deviations: a leg is checked against every constraint of the judge, not only obstacles; where it
 //   violates one at the parent's parent, the cell is reached via the expanded cell; path lengths
 //   are sums of integers (kit/any_angle.hpp); an f that falls from a cell to its successor is
-//   replaced by the last f.
+//   replaced by the last f; under an objective kit::CostedTheta searches, with real costs.
 // Symbols: g length of the path from the start, h straight line to the goal, f = g + h.
 #include "altiplan/kit/any_angle/any_angle_planner.hpp"
 #include "altiplan/planner.hpp"

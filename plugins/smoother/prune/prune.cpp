@@ -4,7 +4,8 @@
 // Citation: paper 002 (fusion of constrained A*, smoothing and potential field), its removal of
 //   redundant points; here the fewest of them, by A* (see planner astar) over pairs of waypoints.
 // Guarantees: the smallest subset of the route's waypoints that keeps the ends and satisfies every
-//   constraint; among those, the shortest. No measure of the route grows.
+//   constraint; among those, the shortest. No measure of the
+//   route grows; under an objective each leg costs no more than those that it replaces.
 // Complexity: O(n^2) leg checks, O(n^3) turn checks in the worst case, for n waypoints.
 // Deviations: legs are checked exactly (the paper checks cells); turns are part of the search.
 // Symbols: a state (i, j) is the leg between waypoints i and j; legs and metres are compared in
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <compare>
 #include <map>
+#include <numeric>
 #include <queue>
 
 #include "altiplan/check.hpp"
@@ -40,7 +42,11 @@ class Pruning {
         request_(request),
         watch_(request.budget),
         count_(route.size()),
-        visible_(count_ * count_, Visible::unknown) {}
+        visible_(count_ * count_, Visible::unknown) {
+    for (std::size_t j = 0; request.objective && j + 1 < count_; ++j) {
+      leg_cost_.push_back(cost_of(Leg::straight(route[j], route[j + 1]), request));
+    }
+  }
 
   /// The indices of the waypoints to keep; empty if the budget was used up or nothing was found.
   std::vector<std::size_t> fewest() {
@@ -113,9 +119,21 @@ class Pruning {
         return false;
       }
       ++legs_checked_;
-      known = leg_ok(std::nullopt, route_[j], route_[k], request_) ? Visible::yes : Visible::no;
+      known = leg_ok(std::nullopt, route_[j], route_[k], request_) && costs_no_more(j, k)
+                  ? Visible::yes
+                  : Visible::no;
     }
     return known == Visible::yes;
+  }
+
+  /// True if the leg j–k costs no more, under the objective, than the legs that it replaces.
+  bool costs_no_more(std::size_t j, std::size_t k) const {
+    if (!request_.objective || k == j + 1) {
+      return true;
+    }
+    const double replaced = std::accumulate(leg_cost_.begin() + std::ptrdiff_t(j),
+                                            leg_cost_.begin() + std::ptrdiff_t(k), 0.0);
+    return !costs_more(cost_of(Leg::straight(route_[j], route_[k]), request_), replaced);
   }
 
   /// Number of legs from each waypoint to the last if turns were free: a lower bound.
@@ -189,6 +207,7 @@ class Pruning {
   BudgetWatch watch_;
   std::size_t count_;
   std::vector<Visible> visible_;
+  std::vector<double> leg_cost_;  ///< of the route's own legs; empty without an objective
   std::vector<int> legs_to_go_;
   std::int64_t expanded_ = 0;
   std::uint64_t legs_checked_ = 0;

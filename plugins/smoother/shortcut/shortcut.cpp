@@ -72,7 +72,9 @@ class Shortening {
     shorter.insert(shorter.end(), pi_.begin() + std::ptrdiff_t(b.after), pi_.end());
     // The leg a-b, and the adjacent ones that are cut, or whose turn changes.
     if (!legs_kept(shorter, a.before - (a.is_waypoint() ? 0 : 1),
-                   a.before + (b.is_waypoint() ? 1 : 2))) {
+                   a.before + (b.is_waypoint() ? 1 : 2)) ||
+        (request_.objective &&
+         costs_more(cost_of(Route(shorter), request_), cost_of(Route(pi_), request_)))) {
       return false;
     }
     pi_ = std::move(shorter);

@@ -63,6 +63,8 @@ PluginEntry stub_of(const Manifest& plugin) {
     entry.local_planner = [](const Value*) { return std::unique_ptr<LocalPlanner>(); };
   } else if (kind == "smoother") {
     entry.smoother = [](const Value*) { return std::unique_ptr<Smoother>(); };
+  } else if (kind == "objective") {
+    entry.objective = [](const Value*, const Site&) { return std::unique_ptr<Objective>(); };
   } else {
     entry.tuner = [](const Value*) { return std::unique_ptr<Tuner>(); };
   }

@@ -11,6 +11,7 @@
 #include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
 #include "altiplan/local_planner.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
 #include "altiplan/smoother.hpp"
@@ -56,6 +57,7 @@ struct Options {
 template <class Interface>
 using Factory = std::function<std::unique_ptr<Interface>()>;
 using EnvironmentFactory = std::function<std::unique_ptr<Environment>(const Site&)>;
+using ObjectiveFactory = std::function<std::unique_ptr<Objective>(const Site&)>;
 
 // Each calls its factory more than once, and expects equal objects.
 Cases planner_cases(const Factory<Planner>& make, const Options& options = {});
@@ -67,6 +69,9 @@ Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint
 /// In a world with the layers `before`; null: none.
 Cases environment_cases(const EnvironmentFactory& make, const Options& options = {},
                         const std::shared_ptr<const World>& before = nullptr);
+/// Likewise in a world; null: of random solids.
+Cases objective_cases(const ObjectiveFactory& make, const Options& options = {},
+                      const std::shared_ptr<const World>& before = nullptr);
 Cases tuner_cases(const Factory<Tuner>& make, const Options& options = {});
 
 /// The cases for plugins of any kind: their entry, and the declaration of their parameters.

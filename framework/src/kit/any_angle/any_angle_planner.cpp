@@ -5,6 +5,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "costed_theta.hpp"
 
 namespace altiplan::kit {
 namespace {
@@ -85,6 +86,25 @@ PlanResult AnyAnglePlanner::by_heading(const Request& request, const PlanResult&
   add(second.counters, found.counters);
   second.message += ", after the search by straight legs between cells found no route";
   return second;
+}
+
+PlanResult EveryCellPlanner::do_plan(const Request& request) const {
+  if (!request.objective) {
+    return AnyAnglePlanner::do_plan(request);
+  }
+  SearchSettings settings;
+  settings.cell_m = params().cell_m;
+  settings.max_bytes = std::min(params().max_bytes(), request.budget.max_memory_bytes);
+  const Lattice lattice(request, settings.cell_m, settings.neighbours,
+                        {params().max_bytes(), sizeof(CostedTheta::Node)});
+  if (auto refused = beyond_budget(lattice, sizeof(CostedTheta::Node), request.budget)) {
+    return *std::move(refused);
+  }
+  OpenList open;
+  PlanResult result = CostedTheta(request, settings, lattice, sight_, open).run().result;
+  const bool again = result.status == PlanStatus::no_route &&
+                     params().angle_rule == AnyAngleParams::Angles::complete;
+  return again ? by_heading(request, result) : result;
 }
 
 AnyAngleSearch::Result EveryCellPlanner::search(Task& task) const {

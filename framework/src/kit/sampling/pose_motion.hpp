@@ -69,7 +69,10 @@ class PoseMotion {
   double metres(Node from, const State& to, double at_most = kInfinity) const {
     return metres(state(from), to, at_most);
   }
-  double metres_to(Node node) const { return memory_.arrivals[std::size_t(node)].metres; }
+  static double edge(Node, const State&, double metres) { return metres; }
+  static double max_metres(double cost) { return cost; }
+  static bool may_improve(const Vec3&, double) { return true; }
+  double edge_to(Node node) const { return memory_.arrivals[std::size_t(node)].metres; }
   double to_go(const State& from) const {
     if (ends_anywhere()) {
       const double ground = (request_.goal.position - from.position).head<2>().norm();

@@ -148,7 +148,8 @@ class StarGrowth {
 
   static const Vec3& place(const State& state) { return Motion::place(state); }
   bool is_useful(const State& state) const {
-    return set_.contains(place(state)) && motion_.rules().point_ok(place(state));
+    return set_.contains(place(state)) && motion_.may_improve(place(state), best_) &&
+           motion_.rules().point_ok(place(state));
   }
 
   /// Puts the nodes within the radius of p into memory_.near, at least the nearest, and returns
@@ -165,7 +166,8 @@ class StarGrowth {
     candidates_.clear();
     for (const std::uint32_t number : memory_.near) {
       const double metres = motion_.minimum(Node(number), x_new);
-      candidates_.push_back({Node(number), metres, memory_.cost[number] + metres, Motion::kExact});
+      const double edge = motion_.edge(Node(number), x_new, metres);
+      candidates_.push_back({Node(number), metres, memory_.cost[number] + edge, Motion::kExact});
     }
   }
 
@@ -185,7 +187,7 @@ class StarGrowth {
       const Candidate candidate = *best;
       *best = candidates_.back();
       candidates_.pop_back();
-      if (candidate.metres == 0 || candidate.metres == kInfinity ||
+      if (candidate.metres == 0 || candidate.cost == kInfinity ||
           candidate.cost + to_go > motion_.max_cost(best_)) {
         return std::nullopt;
       }
@@ -219,7 +221,7 @@ class StarGrowth {
                memory_.cost[std::size_t(x_near)] * kShorter;
       };
       if constexpr (Motion::kExact) {
-        if (gains(candidate.metres)) {
+        if (gains(motion_.edge(x_new, motion_.state(x_near), candidate.metres))) {
           rewire(x_new, x_near);
         }
       } else if (const State state = motion_.state(x_near); gains(motion_.minimum(x_new, state))) {
@@ -245,7 +247,7 @@ class StarGrowth {
     legs.below(x_near, memory_.moved);
     for (const Node node : memory_.moved) {
       memory_.cost[std::size_t(node)] =
-          memory_.cost[std::size_t(legs.parent(node))] + motion_.metres_to(node);
+          memory_.cost[std::size_t(legs.parent(node))] + motion_.edge_to(node);
       note_end(node);
     }
     trace({TraceEvent::Kind::rewired, x_near, x_new, legs.point(x_near),
@@ -256,14 +258,16 @@ class StarGrowth {
   void reach_goals(Node node) {
     const double before = memory_.cost[std::size_t(node)];
     for (std::size_t g = 0; g < goals_.size(); ++g) {
-      const double at_most = std::min(settings_.range, motion_.max_cost(best_) - before);
+      const double at_most =
+          std::min(settings_.range, motion_.max_metres(motion_.max_cost(best_) - before));
       if (reached_[g] || motion_.minimum(node, goals_[g]) > at_most) {
         continue;
       }
       const double metres = motion_.metres(node, goals_[g], at_most);
-      if (metres <= settings_.range && before + metres <= motion_.max_cost(best_) &&
+      const double cost = before + motion_.edge(node, goals_[g], metres);
+      if (metres <= settings_.range && cost <= motion_.max_cost(best_) && cost < kInfinity &&
           motion_.joins(node, goals_[g])) {
-        add(goals_[g], {node, metres, before + metres, true});
+        add(goals_[g], {node, metres, cost, true});
       }
     }
   }
@@ -295,7 +299,7 @@ class StarGrowth {
     motion_.added(node);
     const double cost = Motion::kExact
                             ? parent.cost
-                            : memory_.cost[std::size_t(parent.node)] + motion_.metres_to(node);
+                            : memory_.cost[std::size_t(parent.node)] + motion_.edge_to(node);
     memory_.cost.push_back(cost);
     memory_.ends.push_back(motion_.is_end(state) ? 1 : 0);
     nearest_ = std::min(nearest_, (p - request_.goal.position).norm());
@@ -335,8 +339,10 @@ class StarGrowth {
     }
     if (settings_.bounded && best_ < kForgetBelow * forgotten_at_) {
       forgotten_at_ = best_;
-      memory_.points.forget_if(
-          [&](std::size_t number) { return !set_.contains(memory_.points.point(number)); });
+      memory_.points.forget_if([&](std::size_t number) {
+        const Vec3& p = memory_.points.point(number);
+        return !set_.contains(p) || !motion_.may_improve(p, best_);
+      });
     }
   }
 

@@ -31,6 +31,14 @@ PlanResult star_search(const Request& request, const StarSettings& settings, Sta
   if (auto refused = unsolvable(request, settings.turn_radius)) {
     return *refused;
   }
+  if (request.objective && settings.turn_radius > 0) {
+    PlanResult refused;
+    refused.status = PlanStatus::invalid_problem;
+    refused.message =
+        "with turns this planner minimises length alone, not an objective: plan without a wing and "
+        "a turn radius, or by astar";
+    return refused;
+  }
   return settings.turn_radius == 0 ? StarGrowth<StraightMotion>(request, settings, memory).run()
                                    : StarGrowth<PoseMotion>(request, settings, memory).run();
 }

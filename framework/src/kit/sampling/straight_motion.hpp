@@ -30,6 +30,8 @@ class StraightMotion {
         memory_(memory),
         rules_(request),
         before_start_(request.before_start()),
+        objective_(request.objective.get()),
+        is_point_(request.goal.tolerance_m == 0),
         axes_(std::max(1, free_axes(sampled_box(request)))) {}
 
   static const Vec3& place(const State& state) { return state; }
@@ -45,20 +47,50 @@ class StraightMotion {
     return (memory_.points.point(std::size_t(from)) - to).norm();
   }
   double metres(Node from, const State& to, double = 0) const { return (to - state(from)).norm(); }
-  double metres_to(Node node) const {
-    return (state(node) - state(memory_.legs.parent(node))).norm();
+  /// Cost of an edge of that length.
+  double edge(Node from, const State& to, double metres) const {
+    return objective_ == nullptr ? metres
+                                 : objective_->cost(Leg::straight(state(from), to), 0, request_);
+  }
+  double edge_to(Node node) const {
+    const Node from = memory_.legs.parent(node);
+    return edge(from, state(node), (state(node) - state(from)).norm());
   }
   double to_go(const State& p) const {
+    if (objective_ != nullptr) {
+      return is_point_ ? objective_->bound(p, request_.goal.position, request_) : 0;
+    }
     return std::max(0.0, (p - request_.goal.position).norm() - request_.goal.tolerance_m);
   }
   double min_route() const {
+    if (objective_ != nullptr) {
+      return to_go(request_.start.position);
+    }
     return std::max(
         0.0, (request_.goal.position - request_.start.position).norm() - request_.goal.tolerance_m);
   }
-  double max_cost(double) const { return request_.limits.max_route_length; }
-  bool is_short_enough(Node, double cost) const { return cost <= request_.limits.max_route_length; }
-  /// Distance over the ground from the foci of the informed set.
-  double reach(double cost) const { return cost + request_.goal.tolerance_m; }
+  double max_cost(double best) const {
+    return objective_ == nullptr ? request_.limits.max_route_length
+           : settings_.bounded   ? best
+                                 : kInfinity;
+  }
+  /// Length of an edge of at most that cost.
+  double max_metres(double cost) const { return objective_ == nullptr ? cost : kInfinity; }
+  bool is_short_enough(Node node, double cost) const {
+    const double maximum = request_.limits.max_route_length;
+    return maximum == kInfinity ||
+           (objective_ == nullptr ? cost : length(memory_.legs.way_to(node))) <= maximum;
+  }
+  /// Distance over the ground from the foci of the informed set; under an objective the set is all
+  /// of space, and bounds tell what may improve.
+  double reach(double cost) const {
+    return objective_ == nullptr ? cost + request_.goal.tolerance_m : kInfinity;
+  }
+  /// True if a route through p may cost less than `best`.
+  bool may_improve(const Vec3& p, double best) const {
+    return objective_ == nullptr || !settings_.bounded || best == kInfinity ||
+           objective_->bound(request_.start.position, p, request_) + to_go(p) < best;
+  }
 
   /// min(gamma (log n / n)^(1/d), eta).
   double near_radius(double n, double measure) const {
@@ -118,6 +150,8 @@ class StraightMotion {
   StarMemory& memory_;
   LegRules rules_;
   std::optional<Approach> before_start_;
+  const Objective* objective_;  ///< null: length
+  bool is_point_;               ///< the goal has no tolerance
   int axes_;
 };
 }  // namespace altiplan::kit

@@ -175,7 +175,8 @@ class Rounding {
       state.offered = true;
       const Polyline part = part_with(*curve);
       const bool keeps_all = sound(part);
-      if ((keeps_all || (chosen == kStays && is_accepted(part))) && keeps_whole_rules(*curve)) {
+      if ((keeps_all || (chosen == kStays && is_accepted(part))) && keeps_whole_rules(*curve) &&
+          keeps_cost(part)) {
         chosen = attempt;
         best = *curve;
         if (keeps_all) {
@@ -276,6 +277,16 @@ class Rounding {
       append(whole, route_[i]);
     }
     return Excess(check(whole, request_).violations).within(*allowed_);
+  }
+
+  /// True if the part costs no more than the corner, or the corner is not valid as it is.
+  bool keeps_cost(const Polyline& part) const {
+    if (!request_.objective) {
+      return true;
+    }
+    const Polyline corner = part_with({route_[next_]});
+    return !costs_more(cost_of(Route(part), request_), cost_of(Route(corner), request_)) ||
+           !sound(corner);
   }
 
   /// Counts the outcomes of the corners, if the route with its curves is accepted at all.

@@ -48,14 +48,14 @@ class ALTIPLAN_API AnyAnglePlanner : public Planner {
   };
 
   const AnyAngleParams& params() const { return params_; }
+  PlanResult do_plan(const Request& request) const override;
+  /// The search over cells and headings, after one that found nothing.
+  PlanResult by_heading(const Request& request, const PlanResult& found) const;
 
  private:
   virtual AnyAngleSearch::Result search(Task& task) const = 0;
   /// True if a search that finds nothing has covered every path over the cells.
   virtual bool looks_everywhere() const = 0;
-
-  PlanResult do_plan(const Request& request) const final;
-  PlanResult by_heading(const Request& request, const PlanResult& found) const;
 
   AnyAngleParams params_;
   std::size_t bytes_per_cell_;
@@ -70,10 +70,13 @@ class ALTIPLAN_API EveryCellPlanner : public AnyAnglePlanner {
       : AnyAnglePlanner(params, AnyAngleMemory::kBytesPerNode), sight_(sight) {}
 
  private:
+  PlanResult do_plan(const Request& request) const final;
   AnyAngleSearch::Result search(Task& task) const final;
   bool looks_everywhere() const final { return true; }
   Traits do_traits() const final {
-    return {.complete = params().angle_rule == AnyAngleParams::Angles::complete, .any_angle = true};
+    return {.complete = params().angle_rule == AnyAngleParams::Angles::complete,
+            .any_angle = true,
+            .objectives = true};
   }
 
   Sight sight_;

@@ -91,11 +91,14 @@ class HeadingSearch : GoalSearch {
           (link.length > 0 && !rules_.any_leg_ok(request_.before_start(), start_, there))) {
         continue;
       }
+      const double g = link_cost(start_, there, link.length);
+      if (g == kInfinity) {
+        continue;
+      }
       at_start_ = link.length == 0;
       const std::uint32_t number = tiles_.number(link.cell);
       reached(number);
-      push({number, kNone, kHere}, link.cell, there, link_cost(start_, there, link.length),
-           link.length);
+      push({number, kNone, kHere}, link.cell, there, g, link.length);
     }
   }
 

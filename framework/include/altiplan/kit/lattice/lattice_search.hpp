@@ -55,12 +55,15 @@ struct SearchSettings {
 };
 
 /// Heuristic cost of the path between a cell and an end of the route, and that end's connections to
-/// the lattice.
+/// the lattice. Under an objective it is the objective's bound, unless the heuristic is zero.
 class Estimate {
  public:
-  Estimate(const SearchSettings& settings, const Lattice& lattice, const Vec3& end,
-           double tolerance_m, double cost_per_metre)
-      : heuristic_(settings.heuristic),
+  /// `to_start`: of the path from the end to the cell.
+  Estimate(const Request& request, const SearchSettings& settings, const Lattice& lattice,
+           const Vec3& end, double tolerance_m, double cost_per_metre, bool to_start = false)
+      : request_(request),
+        to_start_(to_start),
+        heuristic_(settings.heuristic),
         lattice_(lattice),
         end_(end),
         tolerance_m_(tolerance_m),
@@ -79,9 +82,17 @@ class Estimate {
   }
 
   /// Lower bound of the cost (except with `manhattan`).
-  double operator()(const Cell& c) const { return per_metre_ * metres(c); }
+  double operator()(const Cell& c) const {
+    if (request_.objective) {
+      return heuristic_ == Heuristic::zero ? 0 : bound(lattice_.position(c));
+    }
+    return per_metre_ * metres(c);
+  }
   /// Lower bound, whatever the heuristic.
   double at_least(const Vec3& p) const {
+    if (request_.objective) {
+      return tolerance_m_ > 0 ? 0 : bound(p);
+    }
     return per_metre_ * std::max(0.0, (p - end_).norm() - tolerance_m_);
   }
   const std::vector<Lattice::Link>& links() const { return links_; }
@@ -96,6 +107,10 @@ class Estimate {
   }
 
  private:
+  double bound(const Vec3& p) const {
+    const Objective& objective = *request_.objective;
+    return to_start_ ? objective.bound(end_, p, request_) : objective.bound(p, end_, request_);
+  }
   double metres(const Cell& c) const {
     switch (heuristic_) {
       case Heuristic::octile: {
@@ -118,6 +133,8 @@ class Estimate {
     return 0;
   }
 
+  const Request& request_;
+  bool to_start_;
   Heuristic heuristic_;
   const Lattice& lattice_;
   Vec3 end_;
@@ -307,7 +324,7 @@ class LatticeSearch {
         lattice_(lattice),
         rules_(request, lattice, settings.moves, settings.corner),
         costs_(settings.cost, request, lowest(request, lattice)),
-        to_goal_(settings, lattice, request.goal.position, request.goal.tolerance_m,
+        to_goal_(request, settings, lattice, request.goal.position, request.goal.tolerance_m,
                  costs_.min_per_metre()),
         watch_(request.budget),
         start_(request.start.position),
@@ -318,6 +335,13 @@ class LatticeSearch {
   /// Evaluations that differ by less are equal: far below any relevant difference, far above the
   /// rounding of a sum.
   double quantum() const {
+    if (request_.objective) {  // in its unit, of which nothing is known
+      const double least = to_goal_.at_least(start_);
+      const double straight = costs_.leg(start_, goal_, 0);
+      return least > 0                              ? least * 1e-12
+             : straight > 0 && straight < kInfinity ? straight * 1e-15
+                                                    : 1e-100;
+    }
     const double of_length = settings_.cost.length > 0 ? std::min(settings_.cost.length, 1.0) : 1;
     return std::max((goal_ - start_).norm(), 1.0) * 1e-12 * of_length *
            std::max(settings_.weight_g, settings_.weight_h);
@@ -340,9 +364,10 @@ class LatticeSearch {
     progress_.too_long = progress_.too_long || beyond;
     return beyond;
   }
-  /// True if no route over the position at that cost improves on the best one known.
+  /// True if no route over the position at that cost improves on the best one known; at an infinite
+  /// cost, none does.
   bool exceeds_incumbent(double g, const Vec3& at) const {
-    return best_cost_ < kInfinity && g + to_goal_.at_least(at) >= best_cost_;
+    return g == kInfinity || (best_cost_ < kInfinity && g + to_goal_.at_least(at) >= best_cost_);
   }
   /// True if lengths are tracked in addition to costs.
   bool keeps_lengths() const { return longest_ < kInfinity && !costs_.length_alone(); }

@@ -31,11 +31,16 @@ struct CostWeights {
 ///
 /// To keep costs finite and not negative, C counts from the lowest position of the search where
 /// that lies below sea, and a distance d to a centre counts as sqrt(d² + 1 m²).
+///
+/// Where the request has an objective, that is the cost, in place of all of these.
 class RouteCosts {
  public:
   /// `lowest`: lower bound of z in the search.
   RouteCosts(const CostWeights& weights, const Request& request, double lowest)
-      : weights_(weights), base_(std::min(lowest, 0.0)) {
+      : request_(request), weights_(weights), base_(std::min(lowest, 0.0)) {
+    if (request.objective) {
+      return;
+    }
     sums_ = !weights.length_alone() && weights.accumulate == Accumulate::length;
     at_places_ = !weights.length_alone() && weights.accumulate == Accumulate::none;
     if (weights.threat > 0) {
@@ -49,6 +54,9 @@ class RouteCosts {
 
   /// Cost that a leg adds to the cost-to-come of its first end.
   double leg(const Vec3& a, const Vec3& b, double length) const {
+    if (request_.objective) {
+      return request_.objective->cost(Leg::straight(a, b), 0, request_);
+    }
     const double metres = weights_.length * length;
     return sums_ ? metres + terms_along(a, b, length) : metres;
   }
@@ -66,7 +74,9 @@ class RouteCosts {
   }
   /// Lower bound of the cost per metre of any path.
   double min_per_metre() const { return min_per_metre_; }
-  bool length_alone() const { return weights_.length_alone() && weights_.length == 1; }
+  bool length_alone() const {
+    return weights_.length_alone() && weights_.length == 1 && !request_.objective;
+  }
 
  private:
   static constexpr double kGuard = 1;  // metres
@@ -94,6 +104,7 @@ class RouteCosts {
     return (std::asinh((from + run) / beside) - std::asinh(from / beside)) * length / run;
   }
 
+  const Request& request_;
   CostWeights weights_;
   double base_;
   bool sums_ = false;

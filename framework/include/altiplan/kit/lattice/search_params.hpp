@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "altiplan/error.hpp"
 #include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/lattice/lattice_search.hpp"
 
@@ -113,6 +114,13 @@ struct SearchParams {
     return settings;
   }
   SearchSettings settings(const Request& request) const {
+    if (request.objective && !(search.cost.length_alone() && search.cost.length == 1)) {
+      throw ParameterError(search.cost.altitude > 0 ? "weight_altitude"
+                           : search.cost.threat > 0 ? "weight_threat"
+                                                    : "weight_length",
+                           "the weights of a cost are for problems without an objective: remove "
+                           "them, or give objective: {length: {}}");
+    }
     SearchSettings settings = this->settings();
     settings.moves = move_check(request);
     settings.max_bytes = std::min(max_bytes(), request.budget.max_memory_bytes);
@@ -128,6 +136,7 @@ struct SearchParams {
     traits.optimal = shortest && s.weight_g > 0 && s.stretch() * s.weight_h <= s.weight_g &&
                      s.costs == StepCosts::Scale::fine;
     traits.anytime = s.anytime && shortest;
+    traits.objectives = true;
     return traits;
   }
 

@@ -54,6 +54,7 @@ struct StarParams : SteeringParams {
     Traits traits;
     traits.loiters = loiters();
     traits.anytime = true;
+    traits.objectives = true;
     return traits;
   }
 };

@@ -35,7 +35,7 @@ struct StarMemory {
 
   LegTree legs;
   PointGrid points;                ///< with the numbers of `legs`
-  std::vector<double> cost;        ///< metres from the start, one entry per node
+  std::vector<double> cost;        ///< from the start, one entry per node
   std::vector<std::uint8_t> ends;  ///< 1 if a route may end at the node
   std::vector<Arrival> arrivals;   ///< one entry per node, or empty
   std::vector<std::uint32_t> near;

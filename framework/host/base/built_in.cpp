@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/base/built_in.hpp"
+
+#include "altiplan/environment.hpp"
+#include "altiplan/objective.hpp"
+#include "host/base/shapes.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Length as an objective among others; alone it is the default, which no object stands for.
+class Length final : public Objective {
+ public:
+  Length(const NoParams&, const Site&) {}
+
+ private:
+  double do_cost(const Leg& leg, double, const Request&) const override { return leg.length(); }
+  double do_bound(const Vec3& from, const Vec3& to, const Request&) const override {
+    return (to - from).norm();
+  }
+  std::string do_unit() const override { return "m"; }
+  Traits do_traits() const override { return {.place = false}; }
+};
+
+/// Without a factory: the objectives that it adds up are made by the host (mission/objective.cpp).
+PluginEntry weighted() {
+  PluginEntry entry{};
+  entry.kind = detail::kKind<Objective>;
+  entry.name = "weighted";
+  entry.sentence = "Sum of several objectives, each times a weight";
+  entry.describe = &detail::describe<WeightedParams>;
+  return entry;
+}
+}  // namespace
+
+const std::vector<PluginEntry>& built_in_plugins() {
+  static const std::vector<PluginEntry> kAll = [] {
+    std::vector<PluginEntry> all(built_in_environments().begin(), built_in_environments().end());
+    all.push_back(detail::make_entry<Objective, Length, NoParams>(
+        "length", "Length of the route, the default"));
+    all.push_back(weighted());
+    return all;
+  }();
+  return kAll;
+}
+
+void ObjectiveTerm::describe(Fields& f) {
+  f.plugin("objective", plugin, parameters).doc("an objective").required();
+  f("weight", weight).greater_than(0).at_most(1e12).doc("factor of its costs");
+}
+
+void WeightedParams::describe(Fields& f) {
+  f("of", of).min_items(1).required().doc("the objectives, each with its weight");
+}
+}  // namespace altiplan::host

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "altiplan/plugin_abi.hpp"
+
+namespace altiplan::host {
+
+/// Plugins of every kind that are built in: the shapes, and the objectives `length` and `weighted`.
+const std::vector<PluginEntry>& built_in_plugins();
+
+/// One of the objectives that `weighted` adds up: `{exposure: {…}, weight: 2}`.
+struct ObjectiveTerm {
+  std::string plugin;
+  Value parameters;
+  double weight = 1;
+  void describe(Fields& f);
+};
+
+struct WeightedParams {
+  std::vector<ObjectiveTerm> of;
+  void describe(Fields& f);
+};
+}  // namespace altiplan::host

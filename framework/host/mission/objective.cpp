@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/mission/objective.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "altiplan/error.hpp"
+#include "host/base/built_in.hpp"
+#include "host/config/config_check.hpp"
+
+namespace altiplan::host {
+namespace {
+
+/// Costs times weights, added up. A sum of consistent bounds is consistent.
+class WeightedSum final : public Objective {
+ public:
+  struct Term {
+    double weight;
+    std::shared_ptr<const Objective> objective;
+  };
+  explicit WeightedSum(std::vector<Term> terms) : terms_(std::move(terms)) {}
+
+ private:
+  double do_cost(const Leg& leg, double time_s, const Request& request) const override {
+    double sum = 0;
+    for (const Term& term : terms_) {
+      sum += term.weight * term.objective->cost(leg, time_s, request);
+    }
+    return sum;
+  }
+  double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
+    double sum = 0;
+    for (const Term& term : terms_) {
+      sum += term.weight * term.objective->bound(from, to, request);
+    }
+    return sum;
+  }
+  /// That of all terms; none where they differ: the weights convert them.
+  std::string do_unit() const override {
+    const std::string unit = terms_.front().objective->unit();
+    for (const Term& term : terms_) {
+      if (term.objective->unit() != unit) {
+        return "";
+      }
+    }
+    return unit;
+  }
+  Traits do_traits() const override {
+    Traits any{.place = false};
+    for (const Term& term : terms_) {
+      const Traits its = term.objective->traits();
+      any.place = any.place || its.place;
+      any.heading = any.heading || its.heading;
+      any.time = any.time || its.time;
+    }
+    return any;
+  }
+
+  std::vector<Term> terms_;
+};
+
+std::shared_ptr<const Objective> make_objective(const Config& config, const std::string& name,
+                                                const Value& parameters, const Site& site,
+                                                const std::string& key) {
+  if (name == "weighted") {
+    WeightedParams params;
+    bind(params, &parameters);
+    std::vector<WeightedSum::Term> terms;
+    for (std::size_t i = 0; i < params.of.size(); ++i) {
+      const ObjectiveTerm& term = params.of[i];
+      terms.push_back({term.weight, make_objective(config, term.plugin, term.parameters, site,
+                                                   item(key + ".of", i) + "." + term.plugin)});
+    }
+    return std::make_shared<WeightedSum>(std::move(terms));
+  }
+  try {
+    std::shared_ptr<const Objective> made =
+        plugin(*config.registry, "objective", name).objective(&parameters, site);
+    if (made == nullptr) {
+      throw PluginError("made no object");
+    }
+    return made;
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const PluginError& error) {
+    throw PluginError("the objective '" + name + "' (" + key + ") " + error.what(), error.reason());
+  } catch (const ParameterError& error) {
+    throw ConfigError(place_of(parameters, error.key()), key + "." + error.key(), error.what());
+  } catch (const Error& error) {
+    throw ConfigError(parameters.where, key, error.what());
+  }
+}
+}  // namespace
+
+std::shared_ptr<const Objective> objective_of(const Config& config, const Site& site) {
+  const ObjectiveEntry* entry = config.objective();
+  if (entry == nullptr) {
+    return nullptr;
+  }
+  Site own = site;
+  own.random = site.random.sub("objective");
+  const std::string key = config.pipeline.objective ? "objective." : "scenario.objective.";
+  return make_objective(config, entry->plugin, entry->parameters, own, key + entry->plugin);
+}
+}  // namespace altiplan::host

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "altiplan/route.hpp"
+
+namespace altiplan {
+
+struct Request;
+
+/// What a route is to have least of: a cost of its legs, added up.
+///
+/// Contract:
+///  1. Pure and const: callable from any number of threads.
+///  2. cost is at least 0 and additive: the sum of the costs of the leg's pieces, each at its own
+///     time. It is infinite where the leg cannot be priced: such a leg is not flown.
+///  3. bound is consistent: bound(a, a) = 0 and bound(a, c) <= cost(a-b) + bound(b, c) for all
+///     places in the request's volume and all times. So it is at most the cost of any route.
+///  4. cost depends on nothing that traits denies: the place (a leg moved elsewhere costs the
+///     same), the heading (so does the leg flown backwards), the time.
+class ALTIPLAN_API Objective {
+ public:
+  struct Traits {
+    bool place = true;
+    bool heading = false;
+    bool time = false;
+  };
+
+  virtual ~Objective();
+  /// Cost of a leg that begins `time_s` seconds after the start, in `unit`. Throws PluginError if
+  /// it is negative or no number.
+  double cost(const Leg& leg, double time_s, const Request& request) const;
+  /// Lower bound of the cost of all routes between two places, at any time. Throws likewise.
+  double bound(const Vec3& from, const Vec3& to, const Request& request) const;
+  /// Unit of costs ("m"), for people; "" without one.
+  std::string unit() const { return do_unit(); }
+  Traits traits() const { return do_traits(); }
+
+ private:
+  virtual double do_cost(const Leg& leg, double time_s, const Request& request) const = 0;
+  virtual double do_bound(const Vec3& from, const Vec3& to, const Request& request) const = 0;
+  virtual std::string do_unit() const = 0;
+  /// Default: depends on the place alone.
+  virtual Traits do_traits() const;
+};
+
+// By the request's objective; by length, in metres, if it has none.
+
+/// Cost of a leg that begins at the start's time.
+ALTIPLAN_API double cost_of(const Leg& leg, const Request& request);
+/// Cost of a route from the start: the sum over its legs, each at its time.
+ALTIPLAN_API double cost_of(const Route& route, const Request& request);
+/// Lower bound of the cost of all routes that begin and end as the request asks; 0 where its ends
+/// are not points (a tolerance or a loiter circle) and no bound is known.
+ALTIPLAN_API double least_cost(const Request& request);
+
+/// True if a cost exceeds another by more than the rounding of sums.
+inline bool costs_more(double cost, double than) { return !(cost <= than * (1 + 1e-12)); }
+}  // namespace altiplan

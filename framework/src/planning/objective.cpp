@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/objective.hpp"
+
+#include <algorithm>
+
+#include "altiplan/attributed.hpp"
+#include "altiplan/measures.hpp"
+
+namespace altiplan {
+namespace {
+
+double at_least_zero(double value, const char* what) {
+  if (!(value >= 0)) {
+    throw PluginError(std::string("the objective violated the contract of its interface: ") + what +
+                          " is " + std::to_string(value) + ", expected a number of at least 0",
+                      Reason::contract);
+  }
+  return value;
+}
+
+std::string objective_text() { return "the objective"; }
+}  // namespace
+
+Objective::~Objective() = default;
+Objective::Traits Objective::do_traits() const { return {}; }
+
+double Objective::cost(const Leg& leg, double time_s, const Request& request) const {
+  return at_least_zero(attributed(objective_text, [&] { return do_cost(leg, time_s, request); }),
+                       "the cost of a leg");
+}
+
+double Objective::bound(const Vec3& from, const Vec3& to, const Request& request) const {
+  return at_least_zero(attributed(objective_text, [&] { return do_bound(from, to, request); }),
+                       "the bound between two places");
+}
+
+double cost_of(const Leg& leg, const Request& request) {
+  return request.objective ? request.objective->cost(leg, 0, request) : leg.length();
+}
+
+double cost_of(const Route& route, const Request& request) {
+  if (!request.objective) {
+    return length(route);
+  }
+  const bool in_time = request.objective->traits().time;
+  double cost = 0;
+  double time_s = 0;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    cost += request.objective->cost(leg, time_s, request);
+    time_s += in_time ? leg_duration(leg, request) : 0;
+  }
+  return cost;
+}
+
+double least_cost(const Request& request) {
+  const State& start = request.start;
+  const Goal& goal = request.goal;
+  if (request.objective) {
+    const bool are_points = !start.loiter && !goal.loiter && goal.tolerance_m == 0;
+    return are_points ? request.objective->bound(start.position, goal.position, request) : 0;
+  }
+  const double radii =
+      (start.loiter ? start.loiter->radius : 0) + (goal.loiter ? goal.loiter->radius : 0);
+  return std::max(0.0, (goal.position - start.position).norm() - goal.tolerance_m - radii);
+}
+}  // namespace altiplan

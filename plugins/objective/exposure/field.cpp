@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace exposure {
+
+Field::Field(std::array<double, 2> origin, std::array<double, 2> step, int columns, int rows,
+             std::vector<float> values, double elsewhere)
+    : origin_(origin),
+      step_(step),
+      counts_{columns, rows},
+      values_(std::move(values)),
+      elsewhere_(elsewhere),
+      minimum_(elsewhere) {
+  // A path may pass a column beyond the posts.
+  for (const std::size_t axis : {0U, 1U}) {
+    least_[axis].assign(std::size_t(counts_[axis]), elsewhere);
+  }
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      if (const double value = post(i, j); !std::isnan(value)) {
+        minimum_ = std::min(minimum_, value);
+        least_[0][std::size_t(i)] = std::min(least_[0][std::size_t(i)], value);
+        least_[1][std::size_t(j)] = std::min(least_[1][std::size_t(j)], value);
+      }
+    }
+  }
+  for (const std::size_t axis : {0U, 1U}) {
+    std::vector<double>& crossed = crossed_[axis];
+    crossed.assign(1, 0.0);
+    for (std::size_t i = 1; i < least_[axis].size(); ++i) {
+      // Within a cell the least value is at least what is interpolated between the least of posts;
+      // a column without any value costs the infinite value of elsewhere, of which 0 is a bound.
+      double& value = least_[axis][i];
+      value = std::isfinite(value) ? value : 0;
+      double& before = least_[axis][i - 1];
+      before = std::isfinite(before) ? before : 0;
+      crossed.push_back(crossed.back() + step_[axis] * (before + value) / 2);
+    }
+  }
+}
+
+namespace {
+/// The lines between the cells of an axis that a leg crosses, by fraction of the leg.
+class Lines {
+ public:
+  Lines(double from, double to, int count) : from_(from), along_(to - from) {
+    const double last = count - 1;
+    line_ = along_ > 0 ? std::max(0.0, std::floor(from) + 1) : std::min(last, std::ceil(from) - 1);
+    left_ = along_ > 0   ? int(std::max(0.0, std::min(last, std::ceil(to)) - line_ + 1))
+            : along_ < 0 ? int(std::max(0.0, line_ - std::max(0.0, std::floor(to)) + 1))
+                         : 0;
+  }
+  /// Infinite after the last one.
+  double next() const { return left_ > 0 ? (line_ - from_) / along_ : kInfinity; }
+  void advance() {
+    line_ += along_ > 0 ? 1 : -1;
+    --left_;
+  }
+
+ private:
+  double from_;
+  double along_;
+  double line_;
+  int left_;
+};
+}  // namespace
+
+double Field::mean(const std::array<double, 2>& from, const std::array<double, 2>& to) const {
+  const std::array<double, 2> middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
+  std::array<int, 2> cell{};
+  for (const std::size_t axis : {0U, 1U}) {
+    if (!(middle[axis] >= 0 && middle[axis] <= counts_[axis] - 1)) {
+      return elsewhere_;
+    }
+    cell[axis] = std::min(int(middle[axis]), counts_[axis] - 2);
+  }
+  const auto [i, j] = cell;
+  const double sw = post(i, j);
+  const double se = post(i + 1, j);
+  const double nw = post(i, j + 1);
+  const double ne = post(i + 1, j + 1);
+  if (std::isnan(sw + se + nw + ne)) {
+    return elsewhere_;
+  }
+  const auto at = [&](const std::array<double, 2>& p) {
+    const double u = p[0] - i;
+    const double v = p[1] - j;
+    return std::max(0.0, (1 - v) * ((1 - u) * sw + u * se) + v * ((1 - u) * nw + u * ne));
+  };
+  return (at(from) + 4 * at(middle) + at(to)) / 6;
+}
+
+double Field::integral(const Vec3& a, const Vec3& b) const {
+  const double length = (b - a).norm();
+  if (length == 0) {
+    return 0;
+  }
+  const std::array<double, 2> from = in_cells(a);
+  const std::array<double, 2> to = in_cells(b);
+  const auto at = [&](double t) {
+    return std::array{from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])};
+  };
+  std::array<Lines, 2> lines{Lines(from[0], to[0], counts_[0]), Lines(from[1], to[1], counts_[1])};
+  double sum = 0;
+  std::array<double, 2> here = from;
+  for (double t = 0; t < 1;) {
+    const std::size_t axis = lines[0].next() <= lines[1].next() ? 0 : 1;
+    const double end = std::min(lines[axis].next(), 1.0);
+    lines[axis].advance();
+    if (end > t) {
+      const std::array<double, 2> there = end < 1 ? at(end) : to;
+      sum += (end - t) * mean(here, there);
+      here = there;
+      t = end;
+    }
+  }
+  return length * sum;
+}
+
+double Field::least_up_to(std::size_t axis, double at) const {
+  const std::vector<double>& least = least_[axis];
+  const std::vector<double>& crossed = crossed_[axis];
+  const double last = counts_[axis] - 1;
+  const double beyond = std::isfinite(elsewhere_) ? elsewhere_ * step_[axis] : 0;
+  if (at < 0) {
+    return at * beyond;
+  }
+  if (at >= last) {
+    return crossed.back() + (at - last) * beyond;
+  }
+  const std::size_t i = std::size_t(at);
+  const double u = at - double(i);
+  const double here = least[i] + u * (least[i + 1] - least[i]);
+  return crossed[i] + u * step_[axis] * (least[i] + here) / 2;
+}
+
+double Field::bound(const Vec3& a, const Vec3& b) const {
+  double bound = (std::isfinite(minimum_) ? minimum_ : 0) * (b - a).norm();
+  for (const std::size_t axis : {0U, 1U}) {
+    const double from = (a[Eigen::Index(axis)] - origin_[axis]) / step_[axis];
+    const double to = (b[Eigen::Index(axis)] - origin_[axis]) / step_[axis];
+    bound = std::max(bound, std::abs(least_up_to(axis, to) - least_up_to(axis, from)));
+  }
+  return bound * (1 - 1e-12);  // of rounding
+}
+}  // namespace exposure
