@@ -145,6 +145,8 @@ class Dangerous(PlanCase):
                 ("a jump back twice", COPTER, [off(), way(200, 0), way(300, 0), do(177, 2, 2), HOME], None, {}),
                 ("a corner before a landing", PLANE,
                  [way(-1200, 0, 100), way(0, 0, 100), to(21, 0, 1200, 0)], None, {"RTL_AUTOLAND": 1}),
+                ("low, and places within each other's reach", PX4_COPTER, [off(4), way(20, 0, 4), to(21, 20.4, 0, -1)],
+                 None, {}),
                 ("a VTOL", VTOL, [UP, way(900, 0), way(900, 900), HOME], None, {}),
                 ("a fence that is wide", COPTER, [off(), way(200, 0)], None, {"FENCE_ENABLE": 1}),
                 ("no wind", PLANE, [way(-1500, 0, 100), way(0, 0, 100), way(0, 1500, 100), HOME],

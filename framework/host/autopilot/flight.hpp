@@ -104,6 +104,8 @@ class Hover {
   double lag_on_circle(const Eigen::Vector2d& centre, double radius, double v) const;
   double climb_rate() const;
   double sink_rate() const;
+  /// Adds what lies within a distance of a leg, level with it.
+  void add_beside(const Destination& to, double distance);
   double reach() const { return reach(acceptance_m); }  ///< of the present place
   double reach(double acceptance) const;                ///< radius within which a place is reached
 

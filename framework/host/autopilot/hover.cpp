@@ -183,6 +183,20 @@ void Hover::follow_ground(const Destination& to) {
   high = before_high;
 }
 
+// Side by side, so that the width adds nothing to the heights.
+void Hover::add_beside(const Destination& to, double distance) {
+  const Eigen::Vector2d leg = to.at - at;
+  const Eigen::Vector2d ahead = leg.norm() > 1e-6 ? leg.normalized() : Eigen::Vector2d(1, 0);
+  const Eigen::Vector2d left(-ahead.y(), ahead.x());
+  const int strips = int(std::ceil(2 * distance / kCornerSpacing));
+  for (int n = 0; n < strips; ++n) {
+    const double aside = distance * ((2.0 * n + 1) / strips - 1);
+    flight_.add_leg(at_height(at + aside * left - distance * ahead, low), high,
+                    at_height(to.at + aside * left + distance * ahead, to.low), to.high,
+                    kCornerSpacing / 2);
+  }
+}
+
 void Hover::go(std::size_t command, const char* what, const Destination& to) {
   flight_.begin(command, what);
   const double vertical = std::max(std::max(to.high - low, 0.0) / climb_rate(),
@@ -197,9 +211,7 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
   // ArduPilot within the radius of the blended corners.
   const bool is_skipped = is_px4 && along < reach(next_acceptance_m);
   const double beside =
-      !is_px4
-          ? std::min(reach(), 10.0)
-          : std::max({1.0, is_skipped ? reach(next_acceptance_m) : 0, is_off_track_ ? reach() : 0});
+      std::max(is_skipped ? reach(next_acceptance_m) : 0, is_off_track_ ? reach() : 0);
   is_off_track_ = is_skipped;
   const Hover begun = *this;
   for (const Eigen::Vector2d& place : leave_circle()) {
@@ -214,7 +226,9 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
     if (to.above_ground) {
       follow_ground(to);
     } else {
-      flight_.add_leg(at_height(at, low), high, at_height(to.at, to.low), to.high, beside);
+      flight_.add_leg(at_height(at, low), high, at_height(to.at, to.low), to.high,
+                      is_px4 ? 1.0 : std::min(reach(), 10.0));
+      add_beside(to, beside);
       low = to.low;
       high = to.high;
     }
