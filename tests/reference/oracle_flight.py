@@ -323,7 +323,11 @@ class ArduCopter(CopterWalk):
         ring = place + radius * np.stack([np.cos(angles), np.sin(angles)], 1)
         times = self.record(item, "circle", at_height(ring, z), min(self.speed, math.sqrt(1.25 * radius)))
         self.cover(item, "circle", ring_points(place, radius, BAND_SAMPLE_M), z, z, self.reach(item), times)
-        self.at = np.array([*ring[-1], z])
+        # Turns are counted of a point that the vehicle is up to two seconds behind.
+        speed = min(self.speed, math.sqrt(1.25 * radius), math.radians(20) * radius)
+        early = 2 * speed if self.choice == "leaves early" else 0.0
+        left = angle + math.copysign(max(abs(sweep) - early / radius, 0), sweep)
+        self.at = np.array([*(place + radius * np.array([math.cos(left), math.sin(left)])), z])
 
     def turn_on_the_spot(self, item, place, z):
         """Section 1 says that the height does not change; its leg there may still be flown to it."""

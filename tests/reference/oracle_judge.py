@@ -12,8 +12,8 @@ from oracle_world import ALWAYS, read_fences
 
 MARGIN_M = 0.5  # rounding of files, and of how the ground is read
 WALKS = {"AC": ArduCopter, "AF": ArduPlane, "QP": QuadPlane, "PM": Px4Copter, "PF": Px4Plane, "PV": Px4Vtol}
-CHOICES = {"AC": ["as drawn"], "PM": ["as drawn"], "AF": ["cut", "slow climbs", "steered"],
-           "QP": ["cut", "slow climbs", "steered"], "PF": ["cut", "slow climbs"], "PV": ["cut"]}
+CHOICES = {"AC": ["as drawn", "leaves early"], "PM": ["as drawn"], "AF": ["cut", "slow climbs", "steered", "weak"],
+           "QP": ["cut", "slow climbs", "steered", "weak"], "PF": ["cut", "slow climbs"], "PV": ["cut"]}
 OFF_GROUND = {"leg", "circle", "return"}  # limits of height above ground apply; not to take-off and landing
 HOME_M = 3.0  # home higher or lower than its ground: heights relative to it are in doubt
 

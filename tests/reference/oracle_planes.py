@@ -11,6 +11,12 @@ GRAVITY = 9.81
 L1_PERIOD, L1_DAMPING = 17.0, 0.75
 FASTEST = 22.0  # AIRSPEED_MAX
 STEP_S = 0.2
+WEAK = 0.62  # of the turn that the guidance seeks, as it was flown in ArduPilot's simulation
+
+
+def true_airspeed(z):
+    """An indicated one, in the standard atmosphere."""
+    return (1 - 2.25577e-5 * min(max(z, -500), 9000)) ** -2.128
 
 
 def l1_length(speed):
@@ -240,7 +246,8 @@ class ArduPlane(PlaneWalk):
         angle = 90.0
         if follows is not None and follows.command in POSITIONS and not follows.nowhere:
             angle = min(bend(self.at, b, np.array([*follows.place, 0])), 90)
-        return min(90.0, l1_length(self.speed)) * angle / 90
+        ratio = true_airspeed(b[2]) if self.choice in ("steered", "weak") else 1.0
+        return min(90.0 * ratio**2, l1_length(self.speed * ratio)) * angle / 90
 
     def passes(self, item):
         return min(math.floor(max(item.param(3), 0)), 255)
@@ -256,6 +263,7 @@ class ArduPlane(PlaneWalk):
         return "ramp"
 
     def do_16(self, item, follows):
+        self.was_circle = False
         if item.nowhere:
             return self.unknown_leg(item, "waypoint at 0, 0")
         place, z = item.place.copy(), self.height_of(item, item.place)
@@ -282,13 +290,14 @@ class ArduPlane(PlaneWalk):
 
     def steer(self, leg):
         """The same leg by the L1 law, from wherever the leg before was left."""
-        if self.choice != "steered" or leg.loose or self.loose:
+        if self.choice not in ("steered", "weak") or leg.loose or self.loose:
             self.pose = None
             return
         way = (leg.b[:2] - leg.a[:2]) / leg.run
         if self.pose is None or self.pose[1] is None:
             self.pose = (leg.a[:2] + way * leg.before, way)
-        points = l1_track(self.pose, leg.a[:2], leg.b[:2], leg.early, self.speed)
+        strength = WEAK if self.choice == "weak" else 1.0
+        points = l1_track(self.pose, leg.a[:2], leg.b[:2], leg.early, self.speed * true_airspeed(leg.b[2]), strength)
         if points is None:
             self.pose = None
             return
@@ -307,10 +316,18 @@ class ArduPlane(PlaneWalk):
     def circle(self, item, follows, is_forever):
         if item.frame in (10, 11):
             return self.unknown_leg(item, "heights above terrain")
+        if self.was_circle:
+            return self.unknown_leg(item, "a circle after a circle may count as reached")
         place = self.place_of(item)
-        self.fly_circle(item, place, self.height_of(item, place), self.radius(item), follows, is_forever)
-        self.is_over = is_forever
+        # The radius grows with the square of the true airspeed.
+        radius, z = self.radius(item), self.height_of(item, place)
+        if self.choice in ("steered", "weak"):
+            radius *= true_airspeed(z) ** 2
+        self.fly_circle(item, place, z, radius, follows, is_forever)
+        self.is_over, self.was_circle = is_forever, item.command != 17
         return None
+
+    was_circle = False
 
     def do_17(self, item, follows):
         self.circle(item, follows, True)
@@ -365,7 +382,7 @@ class ArduPlane(PlaneWalk):
         return self.returns or self.climbs(a, b, run)
 
 
-def l1_track(pose, a, b, early, speed):
+def l1_track(pose, a, b, early, speed, strength=1.0):
     """Until the item counts as reached; None if that takes too long."""
     place, way = np.array(pose[0], float), pose[1]
     run = math.dist(a, b)
@@ -382,7 +399,7 @@ def l1_track(pose, a, b, early, speed):
         towards = -min(max(math.asin(min(max(e / length, -1), 1)), -math.pi / 4), math.pi / 4)
         off = math.remainder(towards - course, 2 * math.pi)
         sideways = gain * speed**2 / length * math.sin(min(max(off, -math.pi / 2), math.pi / 2))
-        course += min(max(sideways, -GRAVITY), GRAVITY) / speed * STEP_S
+        course += strength * min(max(sideways, -GRAVITY), GRAVITY) / speed * STEP_S
         s, e = s + speed * math.cos(course) * STEP_S, e + speed * math.sin(course) * STEP_S
     else:
         return None
