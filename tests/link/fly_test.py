@@ -112,7 +112,7 @@ class Fly(FlownCase):
     def test_a_start_without_an_answer_is_undone(self):
         """It has begun all the same, and climbs."""
         faults = ('[{"fault": "lose", "direction": "out", "message": "COMMAND_ACK", "command": 300,'
-                  ' "count": 9}]')
+                  ' "count": 99}]')
         vehicle = self.vehicle("--autopilot", "ardupilot", "--faults", faults, speedup=1)
         code, flight, out = self.fly(self.planned(), vehicle, *TAKEOFF, "--arm")
         self.assertEqual(code, 1, out)
