@@ -146,10 +146,11 @@ bool LinkedVehicle::is_in_own_mode() const {
 }
 
 void LinkedVehicle::release() {
-  constexpr Time kTimeout{400};  // then the guardian does it
+  constexpr Time kTimeout{1200};  // for a heartbeat; then the guardian does it
   constexpr Time kAgain{200};
   Time ask_at{0};
   commands_ = commands_ && is_in_own_mode();  // else somebody has taken it
+  const bool has_commanded = commands_;
   for (const Time end = time_now() + kTimeout;
        commands_ && feed_.mode() != FlightMode::hold && time_now() < end;) {
     if (time_now() >= ask_at) {
@@ -162,5 +163,8 @@ void LinkedVehicle::release() {
     guardian_->stand_down();
   }
   commands_ = false;
+  if (has_commanded && !feed_.is_armed()) {  // why the pilot could not go on
+    give_up(kDisarmed + feed_.quoted_text());
+  }
 }
 }  // namespace altiplan::link

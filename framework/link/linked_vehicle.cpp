@@ -318,7 +318,7 @@ void LinkedVehicle::expect_in_reach() {
     give_up("the vehicle has restarted");
   }
   if (is_flying_ && !feed_.is_armed()) {
-    give_up("the vehicle has disarmed in flight" + feed_.quoted_text());
+    give_up(kDisarmed + feed_.quoted_text());
   }
   if (!feed_.has_other_mission() && (!is_flying_ || is_in_own_mode())) {
     strange_since_.reset();

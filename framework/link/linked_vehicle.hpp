@@ -13,6 +13,8 @@
 
 namespace altiplan::link {
 
+inline const std::string kDisarmed = "the vehicle has disarmed in flight";
+
 struct LinkedFlight {
   std::vector<Vec3> items;  ///< of the route in the vehicle's mission, from its first item on
   bool arm = false;         ///< arm, take off and start the mission
@@ -39,7 +41,7 @@ class LinkedVehicle final : public host::FlownVehicle {
                        const Report& report) override;
   host::FlownTo go(host::RouteAhead& route, const State& from, const State& command,
                    const Report& report) override;
-  /// Leaves a vehicle that is being commanded in hold.
+  /// Leaves a vehicle that is being commanded in hold. Throws VehicleLost if it has disarmed.
   void release() override;
   Counters counters() const override;
 

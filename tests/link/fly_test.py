@@ -256,12 +256,18 @@ class Fly(FlownCase):
         self.assertLess(max(heights), 532)
 
     def test_motors_that_stop_in_flight(self):
-        vehicle = self.vehicle("--autopilot", "px4", *HOLDING["px4"], "--faults",
-                               '[{"fault": "disarm", "from": 12}]', speedup=5)
-        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm",
-                                     "--command")
-        self.assertEqual(code, 1, out)
-        self.assertIn("the vehicle has disarmed in flight", flight["message"])
+        """Also where it is too low for its pilot before a heartbeat says so."""
+        stop = ('[{"fault": "disarm", "skip": 60, "count": 1, "message":'
+                ' ["SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED"]}]')
+        for autopilot in ("ardupilot", "px4"):
+            with self.subTest(autopilot=autopilot):
+                vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
+                                       "--parameter", "COM_OF_LOSS_T=5.0", "--faults", stop,
+                                       speedup=SPEEDUP)
+                code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm",
+                                             "--command")
+                self.assertEqual(code, 1, out)
+                self.assertIn("the vehicle has disarmed in flight", flight["message"])
 
     def test_terrain_is_answered(self):
         # The world has no ground: nothing is answered, and nothing is harmed.
