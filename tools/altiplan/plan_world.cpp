@@ -140,7 +140,7 @@ std::string about_file(const Error& error) {
   }
   const Problem& problem = of_file->problems().front();
   return problem.where.file == kWorld && problem.key.ends_with(".file") ? problem.message
-                                                                       : error.what();
+                                                                        : error.what();
 }
 
 std::vector<std::string> models_of(const PlanCheck& plan) {

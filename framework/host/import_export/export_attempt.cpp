@@ -248,8 +248,7 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
     }
     if (now) {
       Exported result = attempt.exported(std::move(*now), decimals);
-      for (std::string& note :
-           notes_on(written, options, tolerance, as_turns, mission)) {
+      for (std::string& note : notes_on(written, options, tolerance, as_turns, mission)) {
         result.messages.push_back(std::move(note));
       }
       return result;
