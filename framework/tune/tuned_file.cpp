@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "altiplan/formats/input_file.hpp"
+#include "host/base/built_in.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/config/config_check.hpp"
 #include "host/config/overrides.hpp"
@@ -231,6 +232,14 @@ std::vector<std::pair<std::string, std::string>> paths_of(const host::Config& co
     add_fields(
         plugin(*config.registry, "constraint", entry.plugin).describe(&entry.parameters, path),
         entry.parameters, path);
+  }
+  if (const auto& objective = config.pipeline.objective) {
+    host::for_each_objective(
+        objective->plugin, objective->parameters, "objective",
+        [&](const std::string& name, const Value& parameters, const std::string& key) {
+          add_fields(plugin(*config.registry, "objective", name).describe(&parameters, key),
+                     parameters, key);
+        });
   }
   return paths;
 }

@@ -52,4 +52,18 @@ void ObjectiveTerm::describe(Fields& f) {
 void WeightedParams::describe(Fields& f) {
   f("of", of).min_items(1).required().doc("the objectives, each with its weight");
 }
+
+void for_each_objective(const std::string& name, const Value& parameters, const std::string& path,
+                        const VisitObjective& visit) {
+  const std::string key = path + "." + name;
+  visit(name, parameters, key);
+  if (name == "weighted") {
+    WeightedParams weighted;
+    bind(weighted, &parameters);
+    for (std::size_t i = 0; i < weighted.of.size(); ++i) {
+      for_each_objective(weighted.of[i].plugin, weighted.of[i].parameters,
+                         key + ".of." + std::to_string(i), visit);
+    }
+  }
+}
 }  // namespace altiplan::host

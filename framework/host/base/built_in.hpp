@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,4 +24,11 @@ struct WeightedParams {
   std::vector<ObjectiveTerm> of;
   void describe(Fields& f);
 };
+
+/// Calls `visit(name, parameters, key)` of an objective and of all those that it adds up; `path` is
+/// the key of its map ("objective"), `key` that of its parameters.
+using VisitObjective =
+    std::function<void(const std::string& name, const Value& parameters, const std::string& key)>;
+void for_each_objective(const std::string& name, const Value& parameters, const std::string& path,
+                        const VisitObjective& visit);
 }  // namespace altiplan::host

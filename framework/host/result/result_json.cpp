@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "host/base/built_in.hpp"
@@ -174,19 +173,10 @@ Json plugins_json(const Config& config) {
       use("constraint", entry.plugin);
     }
   }
-  const std::function<void(const std::string&, const Value&)> use_objective =
-      [&](const std::string& name, const Value& parameters) {
-        use("objective", name);
-        if (name == "weighted") {
-          WeightedParams weighted;
-          bind(weighted, &parameters);
-          for (const ObjectiveTerm& term : weighted.of) {
-            use_objective(term.plugin, term.parameters);
-          }
-        }
-      };
   if (const ObjectiveEntry* objective = config.objective()) {
-    use_objective(objective->plugin, objective->parameters);
+    for_each_objective(
+        objective->plugin, objective->parameters, "",
+        [&](const std::string& name, const Value&, const std::string&) { use("objective", name); });
   }
   const auto use_step = [&](const StepEntry& step) {
     for (const char* kind : {"planner", "local_planner", "smoother"}) {
