@@ -95,6 +95,12 @@ MISSIONS = [
      "replace it by waypoints"),
     ("a corner on the way home, with items behind", PLANE,
      [way(-1500, 0, 100), way(0, 0, 100), HOME, way(1500, 0, 100)], (-60, 15, -30, 45, 0, 2000), {}, "clearance"),
+    ("a way on after many rounds", PLANE,
+     [way(0, 0, 100), way(1500, 0, 100), do(177, 1, 10), way(1500, 1500, 100)], (1400, 600, 1650, 700, 0, 2000), {},
+     "item 2 (waypoint)\", \"item 4"),
+    ("rates of climb that are changed", COPTER, [off(), do(178, 2, 0.2), way(100, 0, 90)], None, {}, "rates of climb"),
+    ("a VTOL that slows down beyond its landing", PX4_VTOL,
+     [to(84, 300, 0, 50), way(900, 0), to(85, 1500, 0, 0)], (1520, -30, 1560, 30, 0, 2000), {}, "change to hover"),
     ("wind", PLANE, [way(-1500, 0, 100), way(0, 0, 100), way(0, 1500, 100), HOME], (70, 20, 100, 120, 0, 2000),
      {"WIND": 4}, "clearance"),
 ]
@@ -139,6 +145,15 @@ class Dangerous(PlanCase):
                 answer = json.loads(self.call(*arguments, code=1)[0])
                 said = json.dumps(answer["violations"])
                 self.assertIn(words, said)
+
+    def test_the_last_round_counts(self):
+        """A zone that is closed when a jump leads there again and again."""
+        for repeats, code in ((2, 0), (30, 1), (-1, 1)):
+            arguments = self.arguments("", COPTER, [off(), way(300, 0), way(0, 0), do(177, 2, repeats)], None, {})
+            self.zones("hours.json", [list(lonlat(*p)) for p in (
+                (100, -50), (200, -50), (200, 50), (100, 50), (100, -50))], 2000,
+                schedule={"startTime": "10:20:00Z", "endTime": "11:00:00Z"})
+            self.call(*arguments, "--airspace", "hours.json", "--start-time", "2026-05-01T10:00:00Z", code=code)
 
     def test_what_is_like_them_and_harmless_passes(self):
         for name, vehicle, items, zone, parameters in (

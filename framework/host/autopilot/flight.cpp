@@ -27,6 +27,14 @@ void Flight::take(const TimeSpan& time) {
   }
 }
 
+void Flight::fly_again(std::size_t command, std::size_t last) {
+  for (FlownPart& part : mission_.parts) {
+    if (part.command >= command && part.command <= last) {
+      part.until_s = mission_.time.max_s;
+    }
+  }
+}
+
 void Flight::remark(Remark::Weight weight, const char* rule, std::size_t command,
                     std::string message, double value, double limit) {
   for (const Remark& other : mission_.remarks) {

@@ -37,6 +37,8 @@ class Flight {
   FlownPart& begin(std::size_t command, std::string what);
   /// Ends the current part, which takes so long.
   void take(const TimeSpan& time);
+  /// The parts of this command, or of the commands up to another, are flown until now again.
+  void fly_again(std::size_t command, std::size_t last);
   void remark(Remark::Weight weight, const char* rule, std::size_t command, std::string message,
               double value = 0, double limit = 0);
 
@@ -205,7 +207,8 @@ class Wing {
   double highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
                        double left, double v) const;
   /// Of a height that is sought slowly, and of the highest that may be.
-  void seek_heights(Member& member, double sought, double highest, double seconds) const;
+  void seek_heights(Member& member, double sought, double highest, double seconds,
+                    bool turns) const;
   void circle_until_high(std::size_t command, const Leg& leg);
   /// How far it is below and above its height above the ground, on a circle.
   std::array<double, 2> lags_on_circle(const Destination& centre, double radius, double v) const;

@@ -16,7 +16,7 @@ using Weight = Remark::Weight;
 namespace {
 
 constexpr int kMaxSteps = 100'000;
-constexpr std::size_t kFlownAnew = 3;   // times that an aeroplane's leg is flown before it is known
+constexpr std::size_t kFlownAnew = 3;   // times that a leg is flown before it is known
 constexpr double kFarthest = 300'000;   // metres
 constexpr std::size_t kMaxJumps = 250;  // without a position between them
 constexpr const char* kJumpsAlone =
@@ -132,6 +132,7 @@ void Walker::walk() {
       if (!next) {
         flight_.remark(Weight::note, "never_ends", n, "jumps back for ever: the flight has no end");
         flight_.take({0, kInfinity});
+        flight_.fly_again(commands_.target_of(n).value(), n);
         return;
       }
       if (++jumps > kMaxJumps) {
@@ -217,14 +218,29 @@ bool Walker::carry_out(std::size_t n) {
   }
   Flown& flown = flown_[way_to(n)];
   flight_.repeats = flown.times++;
-  if (is_winged_ && flight_.repeats > kFlownAnew) {  // nothing new is seen
+  if (flight_.repeats > kFlownAnew) {  // nothing new is seen
     flight_.take(flown.time);
+    if (is_winged_) {
+      wing_.emplace(*flown.wing);
+    } else {
+      hover_.emplace(*flown.hover);
+    }
+    flight_.fly_again(n, n);
     flight_.before = n;
     return false;
   }
   const TimeSpan begun = mission_.time;
   const bool ends = is_winged_ ? fly_wing(n) : fly_hover(n);
+  if (wing_) {
+    flown.wing.emplace(*wing_);
+  }
+  if (hover_) {
+    flown.hover.emplace(*hover_);
+  }
   flown.time = {mission_.time.min_s - begun.min_s, mission_.time.max_s - begun.max_s};
+  if (flight_.repeats > 0) {
+    flight_.fly_again(n, n);
+  }
   flight_.before = n;
   former_home_z_.reset();
   is_pending_ = false;

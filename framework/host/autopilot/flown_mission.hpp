@@ -46,6 +46,7 @@ struct FlownPart {
   std::vector<Strip> strips;
   double begin_s = 0;  ///< earliest, from the beginning of the flight
   TimeSpan time;       ///< from the beginning of the flight to the end of the part
+  double until_s = 0;  ///< latest end of the last time that it is flown
 };
 
 /// What is to be said of a command, besides where it flies.

@@ -138,7 +138,17 @@ bool Walker::fly_wing(std::size_t n) {
     to.low = wing_->low();
     to.high = wing_->high();
     to.above_ground.reset();
+    const Eigen::Vector2d track = (to.at - wing_->mean_place()).normalized();
     fly_wing_to(n, "", to, true);
+    if (is_px4()) {  // it may drift beyond while it slows down by 2 m/s² (VT_B_DEC_MSS)
+      constexpr double kReach = 8;
+      const double v = wing_->speed_mps[1] + flight_.wind_mps;
+      const Eigen::Vector2d beyond = to.at + v * v / 4 * track;
+      flight_.begin(n, "the change to hover");
+      flight_.add_strip({to.at.x(), to.at.y(), to.low}, to.high, {beyond.x(), beyond.y(), to.low},
+                        to.high, kReach);
+      flight_.take({0, v / 2});
+    }
     hover_.emplace(flight_, to.at, wing_->low());
     hover_->high = wing_->high();
     is_winged_ = false;

@@ -99,7 +99,10 @@ void Walker::change_speed(std::size_t n) {
   const auto& p = commands_[n].params;
   const double value = p[1];
   if (autopilot_.is_copter() ? !(is_px4() || p[0] == 0 || p[0] == 1) : false) {
-    return;  // of climbs and descents, within the span of the others' times
+    if (value > 0 && (p[0] == 2 || p[0] == 3)) {
+      give_up(n, "other rates of climb and descent are not judged");
+    }
+    return;
   }
   double speeds[2] = {value, value};
   bool counts = value > 0;

@@ -44,6 +44,16 @@ void Walker::return_home(std::size_t n) {
   if (is_too_far(n, home_)) {
     return;
   }
+  const bool are_above_home =
+      std::all_of(plan_.rally.begin(), plan_.rally.end(), [](const formats::MissionPoint& rally) {
+        return rally.frame == formats::AltitudeFrame::home;
+      });
+  if (!is_px4() && !are_above_home) {
+    give_up(n,
+            "some versions take a rally point's height as one above home, whatever its frame: "
+            "give it so");
+    return;
+  }
   const std::optional<Hover> hover = hover_;
   const std::optional<Wing> wing = wing_;
   const bool is_winged = is_winged_;

@@ -156,10 +156,13 @@ class Walker {
   bool is_pending_ = false;  ///< a condition delays what follows
   double hover_speed_[2] = {0, 0};
   double wing_speed_[2] = {0, 0};
-  /// A way between two commands: how often it was flown, and how long it took at last.
+  /// A way between two commands: how often it was flown, how long it took at last, and where it
+  /// ended.
   struct Flown {
     std::size_t times = 0;
     TimeSpan time;
+    std::optional<Hover> hover;
+    std::optional<Wing> wing;
   };
   /// Of which home and at which speeds a way is flown: each is flown anew.
   using Way = std::array<double, 8>;

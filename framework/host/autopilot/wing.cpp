@@ -38,6 +38,9 @@ constexpr double kSwings = 1.4;      // how far it swings out when it joins a ci
 constexpr double kEitherWay = 2.5;   // radians to turn, beyond which it turns left or right
 constexpr double kQuick = 1.15;      // rates of climb and sink, of those that are sought
 constexpr double kSlow = 0.85;
+constexpr double kSlowClimb = 0.75;    // of an aeroplane of ArduPilot's
+constexpr double kClimbInTurn = 0.45;  // the same while it turns
+constexpr double kTurning = 0.3;       // of the greatest turn, from which on it counts as one
 constexpr double kColdest = 0.97;
 constexpr double kWarmest = 1.08;
 constexpr double kWeakest = 0.72;  // the turn that is flown, of what the greatest bank would give
@@ -201,14 +204,18 @@ double Wing::highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eige
   return highest + std::max(before, *leg.to.above_ground);
 }
 
-void Wing::seek_heights(Member& member, double sought, double highest, double seconds) const {
+void Wing::seek_heights(Member& member, double sought, double highest, double seconds,
+                        bool turns) const {
   // The low one sinks quickly and climbs slowly, the high one the other way round.
   const auto seek = [&](double z, double wanted, double sinks, double climbs) {
-    const double quick = wanted < z ? sinks : climbs;
+    const double quick = wanted < z ? sinks : std::max(climbs, kSlow);
     return z + seconds * std::clamp((wanted - z) / (lag_s_ / (quick * quick)), -sink_mps_ * sinks,
                                     climb_mps_ * climbs);
   };
-  member.low = seek(member.low, sought, kQuick, kSlow);
+  const double slow_climb = flight_.autopilot().is_px4() ? kSlow
+                            : turns                      ? kClimbInTurn
+                                                         : kSlowClimb;
+  member.low = seek(member.low, sought, kQuick, slow_climb);
   member.high = seek(member.high, highest, kSlow, kQuick);
 }
 
@@ -277,7 +284,7 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     const double highest =
         is_rough ? std::max(sought_high, highest_ahead(leg, member.at, track, finish - done, v))
                  : sought_high;
-    seek_heights(member, sought, highest, dt);
+    seek_heights(member, sought, highest, dt, std::abs(rate) > kTurning * max_rate);
     const bool is_level =
         std::abs(member.low - old_low) < 1e-3 && std::abs(member.high - old_high) < 1e-3;
     const bool bends = std::abs(member.heading - drawn_heading) > 0.05;
@@ -429,7 +436,7 @@ std::array<double, 2> Wing::lags_on_circle(const Destination& centre, double rad
         member.low = lowest;
         member.high = highest;
       }
-      seek_heights(member, lowest, highest, 2 * kPi * radius / kSides / v);
+      seek_heights(member, lowest, highest, 2 * kPi * radius / kSides / v, true);
       lags[0] = std::max(lags[0], lowest - member.low + kAboveGround);
       lags[1] = std::max(lags[1], member.high - highest + kAboveGround);
     }
@@ -498,12 +505,15 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
 void Wing::land(std::size_t command, const Destination& to) {
   flight_.begin(command, "the landing").ground = FlownPart::Ground::touched_along;
   const Eigen::Vector2d begin = from_.at;
+  const double begin_low = low();
+  const double begin_high = high();
   // Its turn onto the slope, which has no least height.
   Leg slope;
   slope.to = to;
   if (has_track_) {
     cut_corner(slope);
   }
+  does_arrive_ = true;
   const double slope_min_m = std::exchange(slope_min_m_, 0);
   std::vector<std::vector<Passed>> passed(members_.size());
   for (std::size_t n = 0; n < members_.size(); ++n) {
@@ -511,9 +521,13 @@ void Wing::land(std::size_t command, const Destination& to) {
   }
   fill_between(passed);
   slope_min_m_ = slope_min_m;
+  if (!does_arrive_) {
+    flight_.remark(Remark::Weight::not_judged, "not_judged", command,
+                   "how the aeroplane gets to its landing is not judged: it circles the point");
+  }
   const double foot = std::min(to.low, flight_.ground(to.at));
   const Vec3 touch(to.at.x(), to.at.y(), std::max(to.low, foot));
-  flight_.add_strip({begin.x(), begin.y(), low()}, high(), touch, touch.z(), kReach);
+  flight_.add_strip({begin.x(), begin.y(), begin_low}, begin_high, touch, touch.z(), kReach);
   const double length = (to.at - begin).norm();
   flight_.take({length / (speed_mps[1] + flight_.wind_mps),
                 length / std::max(speed_mps[0] - flight_.wind_mps, 1.0) * 1.5 + 30});

@@ -158,7 +158,8 @@ class Gate {
       return !one.violation.layer.empty() && !is_ground_layer(one.violation.layer, world_);
     });
     if (options_.world_during && depends) {
-      const Mission world = options_.world_during(part.begin_s, part.time.max_s);
+      const Mission world =
+          options_.world_during(part.begin_s, std::max(part.time.max_s, part.until_s));
       found = BandJudge(judged_request(world)).violations(part);
     }
     return found;
