@@ -212,7 +212,13 @@ bool Walker::carry_out(std::size_t n) {
   if (!formats::flies_to_position(task)) {
     return false;
   }
+  const bool begins = !has_flown_;
   begin_in_the_air(n);
+  if (is_winged_ && !begins && flight_.before == n) {
+    return give_up(n,
+                   "how an aeroplane turns back to the item that it has just passed is not "
+                   "judged");
+  }
   if (is_too_far(n, destination(n).at)) {
     return true;
   }

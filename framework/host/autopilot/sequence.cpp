@@ -27,7 +27,8 @@ std::optional<std::size_t> Sequence::target_of(std::size_t n) const {
 
 int Sequence::jumps_left(std::size_t n) const {
   constexpr double kMost = 65535;
-  const double repeats = commands_[n].params[1];
+  const bool wraps = autopilot_.is_px4() && commands_[n].params[1] < 0;  // it stores 16 bits
+  const double repeats = wraps ? kMost : commands_[n].params[1];
   const auto made = jumped_.find(n);
   return repeats < 0 ? -1
                      : int(std::isfinite(repeats) ? std::min(repeats, kMost) : 0) -
