@@ -152,6 +152,9 @@ void add_outcome(Class& type) {
                   {"reason", "Optional[str]", "its machine-readable cause, or None"},
                   {"message", "str", "a sentence"},
                   {"budget_hit", "bool", "True if a budget ended it"},
+                  {"cost", "Optional[float]",
+                   "what its route costs by the objective, by default its length (m)"},
+                  {"bound", "Optional[float]", "what any such route costs at least"},
                   {"setup_time_s", "float", "wall time of the setup (s)"}});
   type.def_property_readonly(
       "route", [](const T& t) { return t.route; }, "Optional[Route]: its route, or None.");

@@ -48,7 +48,7 @@ class Run(PythonCase):
 
     def test_attributes_are_the_keys(self):
         result = altiplan.run(PIPELINES / "ridge_crossing.yaml", set=UNHURRIED)
-        arrays = {"route", "route_lonlat", "legs", "track", "trace", "altiplan", "cost", "bound"}
+        arrays = {"route", "route_lonlat", "legs", "track", "trace", "altiplan"}
         pairs = [(result, result.to_dict()), (result.flight, result.to_dict()["flight"]),
                  (result.metrics, result.to_dict()["metrics"])]
         pairs += zip(result.steps, result.to_dict()["steps"])

@@ -246,6 +246,12 @@ class Step:
     def budget_hit(self) -> bool:
         """True if a budget ended it"""
     @property
+    def cost(self) -> Optional[float]:
+        """what its route costs by the objective, by default its length (m)"""
+    @property
+    def bound(self) -> Optional[float]:
+        """what any such route costs at least"""
+    @property
     def setup_time_s(self) -> float:
         """wall time of the setup (s)"""
     @property
@@ -303,6 +309,12 @@ class Result:
     @property
     def budget_hit(self) -> bool:
         """True if a budget ended it"""
+    @property
+    def cost(self) -> Optional[float]:
+        """what its route costs by the objective, by default its length (m)"""
+    @property
+    def bound(self) -> Optional[float]:
+        """what any such route costs at least"""
     @property
     def setup_time_s(self) -> float:
         """wall time of the setup (s)"""
