@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "altiplan/formats/mission_file.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/program.hpp"
@@ -52,12 +51,6 @@ host::Config opened(const std::string& file, const host::Overrides& overrides,
   if (fs::path(file).extension() == ".json") {
     const host::StoredResult stored = host::read_result(file, overrides);
     return host::load_config(stored.pipeline, stored.overrides, registry);
-  }
-  if (formats::is_mission_file(file)) {
-    throw Error(
-        file +
-        " is a mission: altiplan view MISSION --terrain DEM -o page.html shows it, altiplan "
-        "check MISSION --terrain DEM --fix FILE mends it");
   }
   const host::FileKind kind = host::kind_of(host::load_yaml(file));
   if (kind != host::FileKind::pipeline && kind != host::FileKind::scenario) {

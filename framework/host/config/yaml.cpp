@@ -114,9 +114,10 @@ std::string read_file(const std::filesystem::path& file) {
 
 Value load_yaml(const std::filesystem::path& file) {
   if (const auto ending = file.extension(); ending == ".plan" || ending == ".waypoints") {
-    throw ConfigError(Location{file.string(), 0, 0, ""}, "",
-                      "is a mission, expected a YAML file: `altiplan check` judges a mission, "
-                      "`altiplan view` shows it, `altiplan upload` loads it into a vehicle");
+    throw ConfigError(
+        Location{file.string(), 0, 0, ""}, "",
+        "is a mission, expected a YAML file: `altiplan check` judges a mission and mends "
+        "it, `altiplan view` shows it, `altiplan upload` loads it into a vehicle");
   }
   return parse_yaml(read_file(file), file.string());
 }
