@@ -108,7 +108,7 @@ class View(CliCase):
             self.assertEqual((out, err.count("\n")), ("", 1), err)
         result = json.loads(self.read("one.json"))
         keys = set(result) - {"version", "plugins", "budget_hit", "reason", "setup_time_s", "route_lonlat",
-                              "legs", "folder", "cost", "bound", "objective"}  # which results of earlier versions lack
+                              "legs", "folder", "cost", "bound"}  # which results of earlier versions lack
         for key in keys:
             damaged = self.write("damaged.json", json.dumps(
                 {name: value for name, value in result.items() if name != key}))
