@@ -40,18 +40,22 @@ std::optional<formats::Autopilot> autopilot_of(const link::Vehicle& vehicle) {
 
 void tell_refusals(const link::Vehicle& vehicle, const formats::MissionFile& mission) {
   const std::optional<formats::Autopilot> autopilot = autopilot_of(vehicle);
-  if (!autopilot) {
-    return;
+  if (!autopilot || mission.items.empty() || mission.commands.empty()) {
+    return;  // nothing is flown, or without commands that could be refused
   }
   host::GateOptions gate;
   gate.firmware = autopilot->firmware;
   gate.airframe = autopilot->airframe;
-  for (const host::FlownMission& flown : host::flights_of(mission, nullptr, gate)) {
-    for (const host::Remark& remark : flown.remarks) {
-      if (remark.rule == "refused") {
-        warn(host::name_of_command(mission.commands[remark.command]) + ": " + remark.message);
+  try {
+    for (const host::FlownMission& flown : host::flights_of(mission, nullptr, gate)) {
+      for (const host::Remark& remark : flown.remarks) {
+        if (remark.rule == "refused") {
+          warn(host::name_of_command(mission.commands[remark.command]) + ": " + remark.message);
+        }
       }
     }
+  } catch (const Error& error) {
+    warn(std::string("what the vehicle refuses is not known: ") + error.what());
   }
 }
 
