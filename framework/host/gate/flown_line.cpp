@@ -11,7 +11,7 @@ namespace {
 /// Of strips that join end to end, those that are longest in plan.
 std::span<const Strip> longest_chain(const std::vector<Strip>& strips) {
   std::span<const Strip> longest;
-  double most = -1;
+  double longest_m = -1;
   for (std::size_t begin = 0; begin < strips.size();) {
     double length = 0;
     std::size_t end = begin;
@@ -19,8 +19,8 @@ std::span<const Strip> longest_chain(const std::vector<Strip>& strips) {
       length += (strips[end].to - strips[end].from).head<2>().norm();
       ++end;
     } while (end < strips.size() && strips[end].from.head<2>() == strips[end - 1].to.head<2>());
-    if (length > most) {
-      most = length;
+    if (length > longest_m) {
+      longest_m = length;
       longest = std::span(strips).subspan(begin, end - begin);
     }
     begin = end;

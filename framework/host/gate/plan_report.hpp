@@ -67,7 +67,7 @@ struct PlanReport {
 };
 
 /// One of the lines that the flight may follow: in each part the longest, in the middle between its
-/// least and its greatest heights.
+/// minimum and maximum heights.
 Polyline flown_line(const FlownMission& flown);
 
 /// "pass", "fail", "not judged"

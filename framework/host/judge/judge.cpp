@@ -122,7 +122,7 @@ Cost price(const Route& route, const Request& request, const std::vector<Goal>& 
   for (const Goal& goal : goals) {
     section.goal = goal;
     if (tolerance == 0 || !request.objective) {
-      cost.bound += std::max(0.0, least_cost(section) - tolerance);
+      cost.bound += std::max(0.0, min_cost(section) - tolerance);
     }
     section.start.position = goal.position;
     section.start.loiter = goal.loiter;

@@ -53,7 +53,7 @@ ALTIPLAN_API double cost_of(const Leg& leg, const Request& request);
 ALTIPLAN_API double cost_of(const Route& route, const Request& request);
 /// Lower bound of the cost of all routes that begin and end as the request asks; 0 where its ends
 /// are not points (a tolerance or a loiter circle) and no bound is known.
-ALTIPLAN_API double least_cost(const Request& request);
+ALTIPLAN_API double min_cost(const Request& request);
 
 /// True if a cost exceeds another by more than the rounding of sums.
 inline bool costs_more(double cost, double than) { return !(cost <= than * (1 + 1e-12)); }

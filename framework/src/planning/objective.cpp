@@ -53,7 +53,7 @@ double cost_of(const Route& route, const Request& request) {
   return cost;
 }
 
-double least_cost(const Request& request) {
+double min_cost(const Request& request) {
   const State& start = request.start;
   const Goal& goal = request.goal;
   if (request.objective) {

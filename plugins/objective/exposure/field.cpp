@@ -17,26 +17,26 @@ Field::Field(std::array<double, 2> origin, std::array<double, 2> step, int colum
       minimum_(elsewhere) {
   // A path may pass a column beyond the posts.
   for (const std::size_t axis : {0U, 1U}) {
-    least_[axis].assign(std::size_t(counts_[axis]), elsewhere);
+    minima_[axis].assign(std::size_t(counts_[axis]), elsewhere);
   }
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       if (const double value = post(i, j); !std::isnan(value)) {
         minimum_ = std::min(minimum_, value);
-        least_[0][std::size_t(i)] = std::min(least_[0][std::size_t(i)], value);
-        least_[1][std::size_t(j)] = std::min(least_[1][std::size_t(j)], value);
+        minima_[0][std::size_t(i)] = std::min(minima_[0][std::size_t(i)], value);
+        minima_[1][std::size_t(j)] = std::min(minima_[1][std::size_t(j)], value);
       }
     }
   }
   for (const std::size_t axis : {0U, 1U}) {
     std::vector<double>& crossed = crossed_[axis];
     crossed.assign(1, 0.0);
-    for (std::size_t i = 1; i < least_[axis].size(); ++i) {
-      // Within a cell the least value is at least what is interpolated between the least of posts;
+    for (std::size_t i = 1; i < minima_[axis].size(); ++i) {
+      // Within a cell the minimum is at least what is interpolated between the least of posts;
       // a column without any value costs the infinite value of elsewhere, of which 0 is a bound.
-      double& value = least_[axis][i];
+      double& value = minima_[axis][i];
       value = std::isfinite(value) ? value : 0;
-      double& before = least_[axis][i - 1];
+      double& before = minima_[axis][i - 1];
       before = std::isfinite(before) ? before : 0;
       crossed.push_back(crossed.back() + step_[axis] * (before + value) / 2);
     }
@@ -121,8 +121,8 @@ double Field::integral(const Vec3& a, const Vec3& b) const {
   return length * sum;
 }
 
-double Field::least_up_to(std::size_t axis, double at) const {
-  const std::vector<double>& least = least_[axis];
+double Field::minimum_up_to(std::size_t axis, double at) const {
+  const std::vector<double>& minima = minima_[axis];
   const std::vector<double>& crossed = crossed_[axis];
   const double last = counts_[axis] - 1;
   const double beyond = std::isfinite(elsewhere_) ? elsewhere_ * step_[axis] : 0;
@@ -134,8 +134,8 @@ double Field::least_up_to(std::size_t axis, double at) const {
   }
   const std::size_t i = std::size_t(at);
   const double u = at - double(i);
-  const double here = least[i] + u * (least[i + 1] - least[i]);
-  return crossed[i] + u * step_[axis] * (least[i] + here) / 2;
+  const double here = minima[i] + u * (minima[i + 1] - minima[i]);
+  return crossed[i] + u * step_[axis] * (minima[i] + here) / 2;
 }
 
 double Field::bound(const Vec3& a, const Vec3& b) const {
@@ -143,7 +143,7 @@ double Field::bound(const Vec3& a, const Vec3& b) const {
   for (const std::size_t axis : {0U, 1U}) {
     const double from = (a[Eigen::Index(axis)] - origin_[axis]) / step_[axis];
     const double to = (b[Eigen::Index(axis)] - origin_[axis]) / step_[axis];
-    bound = std::max(bound, std::abs(least_up_to(axis, to) - least_up_to(axis, from)));
+    bound = std::max(bound, std::abs(minimum_up_to(axis, to) - minimum_up_to(axis, from)));
   }
   return bound * (1 - 1e-12);  // of rounding
 }

@@ -36,7 +36,7 @@ class Field {
   }
   /// Integral over a part of a leg that lies in one cell, per metre of it; positions in cells.
   double mean(const std::array<double, 2>& from, const std::array<double, 2>& to) const;
-  double least_up_to(std::size_t axis, double at) const;
+  double minimum_up_to(std::size_t axis, double at) const;
 
   std::array<double, 2> origin_;
   std::array<double, 2> step_;
@@ -44,8 +44,8 @@ class Field {
   std::vector<float> values_;
   double elsewhere_;
   double minimum_;
-  /// Integral of the least value of each column (row), from the first on: one entry per post.
-  std::array<std::vector<double>, 2> least_;
+  /// Integral of the minimum of each column (row), from the first on: one entry per post.
+  std::array<std::vector<double>, 2> minima_;
   std::array<std::vector<double>, 2> crossed_;
 };
 }  // namespace exposure
