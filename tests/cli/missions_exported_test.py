@@ -113,7 +113,7 @@ class Missions(PlanCase):
         self.altiplan("view", "mission.plan", "-o", "page.html", code=2)
         self.altiplan("view", "mission.plan", "--terrain", TERRAIN, "--mp4", "film.mp4", code=2)
         _, err = self.altiplan("edit", "mission.plan", code=3)
-        self.assertIn("altiplan view MISSION --terrain DEM", err)
+        self.assertIn("`altiplan view` shows it", err)
 
     def test_options(self):
         _, err = self.altiplan("export", "mission.plan", "-o", "other.plan", code=2)
