@@ -3,6 +3,7 @@
 places all over the Earth, has one verdict, with the figures of GeodSolve; and zones as files may
 draw them."""
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ import tempfile
 import unittest
 
 PROGRAM = sys.argv[1]
+NIGHTLY = os.environ.get("ALTIPLAN_NIGHTLY")  # every place in every system, else in two of them
 HEIGHT = 30  # of the ground, metres
 
 # Longitude, latitude, a national system.
@@ -100,7 +102,7 @@ class Earth(unittest.TestCase):
 
     def test_one_verdict_in_every_system(self):
         judged = 0
-        for lon, lat, national in PLACES:
+        for n, (lon, lat, national) in enumerate(PLACES):
             zone = int((lon + 180) // 6) % 60 + 1
             utm = (32600 if lat >= 0 else 32700)
             codes = [4326, 3857, utm + zone, utm + zone % 60 + 1, 3413 if lat > 0 else 3031, national]
@@ -109,7 +111,8 @@ class Earth(unittest.TestCase):
             middle = end_of(lon, lat, 60, 750)
             centre = end_of(*middle, 150, 400)  # of a circle beside the leg
             points = [(*start, HEIGHT + 50), (*goal, HEIGHT + 50)]
-            for code in dict.fromkeys(codes):
+            codes = list(dict.fromkeys(codes))
+            for code in codes if NIGHTLY else {codes[n % len(codes)], codes[(n + 2) % len(codes)]}:
                 model = self.model(lon, lat, code)
                 if model is None:
                     continue
@@ -124,7 +127,7 @@ class Earth(unittest.TestCase):
                     self.check(plan_of(points), model, "--max-distance", "50.3", expect="pass")
                     self.check(plan_of(points), model, "--max-distance", "49.9", expect="fail")
                     judged += 1
-        self.assertGreater(judged, 85)
+        self.assertGreater(judged, 85 if NIGHTLY else 28)
 
     def test_long_legs_are_the_autopilots(self):
         leg = [(8.8684, 47, 100), (9.1316, 47, 100)]

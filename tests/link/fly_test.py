@@ -17,11 +17,22 @@ ACCEPTED = {"generic": ("--accept-failsafe",)}
 
 
 class Fly(FlownCase):
+    """What the tests share."""
+
     def expect_flown(self, code, flight, out):
         self.assertEqual(code, 0, out)
         self.assertEqual(flight["status"], "solved")
         self.assertEqual(flight["check"]["violations"], [])
         self.assertTrue(flight["reached"])
+
+    def expect_nothing_uploaded(self, vehicle):
+        received = {entry["message"] for entry in vehicle.log("received")}
+        self.assertIn("HEARTBEAT", received)
+        self.assertFalse(received & {"MISSION_COUNT", "COMMAND_LONG", "COMMAND_INT"})
+
+
+class Flown(Fly):
+    """Routes and threats, to the end."""
 
     def test_a_route_is_flown_and_judged(self):
         result = self.planned(pilot="route")
@@ -62,6 +73,28 @@ class Fly(FlownCase):
                     modes = vehicle.modes()
                     self.assertEqual(modes[modes.index("AUTO"):][:3], ["AUTO", "GUIDED", "AUTO"])
                     self.assertGreater(flight["min_separation_m"], 5)
+
+    def test_the_height_is_kept_under_command(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--drift", "0.5")
+        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm",
+                                     "--command")
+        self.expect_flown(code, flight, out)
+        heights = [entry["alt"] for entry in vehicle.log("position") if entry["mode"] == "GUIDED"
+                   and entry["alt"] > 525]
+        self.assertGreater(len(heights), 50)
+        self.assertLess(max(heights), 532)
+
+    def test_terrain_is_answered(self):
+        # The world has no ground: nothing is answered, and nothing is harmed.
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--terrain")
+        code, flight, out = self.fly(self.planned(pilot="route"), vehicle, *TAKEOFF, "--arm")
+        self.expect_flown(code, flight, out)
+        self.assertTrue([entry for entry in vehicle.log("sent")
+                         if entry["message"] == "TERRAIN_REQUEST"])
+
+
+class Begun(Fly):
+    """What is believed, refused or undone before the first item."""
 
     def test_px4_begins_at_the_first_item_after_half_a_flight(self):
         """It keeps the number of the old mission's item unless the new one says otherwise."""
@@ -119,15 +152,6 @@ class Fly(FlownCase):
         self.assertIn("does not answer the command to start its mission", flight["message"])
         self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 5))
 
-    def test_without_command_a_danger_is_only_noted(self):
-        vehicle = self.vehicle("--autopilot", "ardupilot")
-        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm")
-        self.assertEqual(code, 1, out)
-        self.assertEqual(flight["status"], "collided")
-        self.assertIn("too close to 'pop_up', but commands are not allowed",
-                      flight["handovers"][0]["why"])
-        self.assertEqual(vehicle.log("setpoint"), [])
-
     def test_without_arm_nothing_is_commanded(self):
         vehicle = self.vehicle("--autopilot", "ardupilot")
         process = self.flying(self.planned(), vehicle, *TAKEOFF, "--command")
@@ -139,6 +163,57 @@ class Fly(FlownCase):
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(30), 130)
         self.assertEqual(vehicle.log("mode", "armed", "setpoint"), [])
+
+    def test_what_is_neither_hold_nor_return_is_not_commanded(self):
+        result = self.planned(pop_up=True)
+        silent = '[{"fault": "lose", "direction": "out", "message": "PARAM_VALUE"}]'
+        for autopilot, options, words in (
+                ("px4", (), "it flies on for 1 s and is in POSCTL"),
+                ("px4", ("COM_OBL_RC_ACT=4",), "lands where it is"),
+                ("px4", ("COM_OBL_RC_ACT=5", "NAV_DLL_ACT=6"), "holds, then disarms"),
+                ("px4", ("COM_OBL_RC_ACT=9",), "what is not known here"),
+                ("ardupilot", ("FS_GCS_ENABLE=5",), "hovers, then lands where it is"),
+                ("ardupilot", ("GUID_TIMEOUT=30.0",), "it flies on for 30 s"),
+                ("ardupilot", (silent,), "it does not tell its parameter GUID_TIMEOUT"),
+                ("generic", (), "its autopilot is neither ArduPilot nor PX4")):
+            with self.subTest(autopilot=autopilot, options=options):
+                more = [part for option in options for part in
+                        ("--faults" if option == silent else "--parameter", option)]
+                vehicle = self.vehicle("--autopilot", autopilot, *more)
+                code, out, err = self.altiplan("fly", result, "--link", vehicle.address, *TAKEOFF,
+                                               "--arm", "--command")
+                self.assertEqual(code, 1, out + err)
+                self.assertIn(words, err)
+                self.assertIn("--accept-failsafe commands it all the same", err)
+                self.expect_nothing_uploaded(vehicle)
+
+    def test_a_route_is_not_flown_by_another_kind(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot")
+        code, out, err = self.altiplan("fly", self.planned("plane", pilot="route"), "--link",
+                                       vehicle.address, "--arm")
+        self.assertEqual(code, 1, out + err)
+        self.assertIn("the route is an aeroplane's, and the vehicle is a quadrotor", err)
+        self.expect_nothing_uploaded(vehicle)
+
+    def test_usage(self):
+        result = self.planned()
+        for options, words in ((("--arcs", "loiter"), "give --arcs points"),):
+            code, _, err = self.altiplan("fly", result, "--link", "udp:127.0.0.1:9", *options)
+            self.assertEqual(code, 2)
+            self.assertIn(words, err)
+
+
+class Ended(Fly):
+    """How flights end that nobody planned so."""
+
+    def test_without_command_a_danger_is_only_noted(self):
+        vehicle = self.vehicle("--autopilot", "ardupilot")
+        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm")
+        self.assertEqual(code, 1, out)
+        self.assertEqual(flight["status"], "collided")
+        self.assertIn("too close to 'pop_up', but commands are not allowed",
+                      flight["handovers"][0]["why"])
+        self.assertEqual(vehicle.log("setpoint"), [])
 
     def test_a_lost_link_is_one_sentence(self):
         faults = '[{"fault": "silence", "from": 6, "seconds": 30}]'
@@ -192,42 +267,6 @@ class Fly(FlownCase):
         self.assertIn("which this flight has not asked for", self.flight()["message"])
         self.assertEqual(vehicle.modes()[-1], "HOLD")
 
-    def expect_nothing_uploaded(self, vehicle):
-        received = {entry["message"] for entry in vehicle.log("received")}
-        self.assertIn("HEARTBEAT", received)
-        self.assertFalse(received & {"MISSION_COUNT", "COMMAND_LONG", "COMMAND_INT"})
-
-    def test_what_is_neither_hold_nor_return_is_not_commanded(self):
-        result = self.planned(pop_up=True)
-        silent = '[{"fault": "lose", "direction": "out", "message": "PARAM_VALUE"}]'
-        for autopilot, options, words in (
-                ("px4", (), "it flies on for 1 s and is in POSCTL"),
-                ("px4", ("COM_OBL_RC_ACT=4",), "lands where it is"),
-                ("px4", ("COM_OBL_RC_ACT=5", "NAV_DLL_ACT=6"), "holds, then disarms"),
-                ("px4", ("COM_OBL_RC_ACT=9",), "what is not known here"),
-                ("ardupilot", ("FS_GCS_ENABLE=5",), "hovers, then lands where it is"),
-                ("ardupilot", ("GUID_TIMEOUT=30.0",), "it flies on for 30 s"),
-                ("ardupilot", (silent,), "it does not tell its parameter GUID_TIMEOUT"),
-                ("generic", (), "its autopilot is neither ArduPilot nor PX4")):
-            with self.subTest(autopilot=autopilot, options=options):
-                more = [part for option in options for part in
-                        ("--faults" if option == silent else "--parameter", option)]
-                vehicle = self.vehicle("--autopilot", autopilot, *more)
-                code, out, err = self.altiplan("fly", result, "--link", vehicle.address, *TAKEOFF,
-                                               "--arm", "--command")
-                self.assertEqual(code, 1, out + err)
-                self.assertIn(words, err)
-                self.assertIn("--accept-failsafe commands it all the same", err)
-                self.expect_nothing_uploaded(vehicle)
-
-    def test_a_route_is_not_flown_by_another_kind(self):
-        vehicle = self.vehicle("--autopilot", "ardupilot")
-        code, out, err = self.altiplan("fly", self.planned("plane", pilot="route"), "--link",
-                                       vehicle.address, "--arm")
-        self.assertEqual(code, 1, out + err)
-        self.assertIn("the route is an aeroplane's, and the vehicle is a quadrotor", err)
-        self.expect_nothing_uploaded(vehicle)
-
     def test_a_mission_that_another_program_replaces(self):
         other = os.path.join(self.folder, "other.json")
         os.rename(self.planned(pilot="route"), other)
@@ -245,16 +284,6 @@ class Fly(FlownCase):
                 self.assertEqual(process.returncode, 1, out + err)
                 self.assertIn("another program has replaced the vehicle's mission", out)
 
-    def test_the_height_is_kept_under_command(self):
-        vehicle = self.vehicle("--autopilot", "ardupilot", "--drift", "0.5")
-        code, flight, out = self.fly(self.planned(pop_up=True), vehicle, *TAKEOFF, "--arm",
-                                     "--command")
-        self.expect_flown(code, flight, out)
-        heights = [entry["alt"] for entry in vehicle.log("position") if entry["mode"] == "GUIDED"
-                   and entry["alt"] > 525]
-        self.assertGreater(len(heights), 50)
-        self.assertLess(max(heights), 532)
-
     def test_motors_that_stop_in_flight(self):
         """Also where it is too low for its pilot before a heartbeat says so."""
         stop = ('[{"fault": "disarm", "skip": 60, "count": 1, "message":'
@@ -268,21 +297,6 @@ class Fly(FlownCase):
                                              "--command")
                 self.assertEqual(code, 1, out)
                 self.assertIn("the vehicle has disarmed in flight", flight["message"])
-
-    def test_terrain_is_answered(self):
-        # The world has no ground: nothing is answered, and nothing is harmed.
-        vehicle = self.vehicle("--autopilot", "ardupilot", "--terrain")
-        code, flight, out = self.fly(self.planned(pilot="route"), vehicle, *TAKEOFF, "--arm")
-        self.expect_flown(code, flight, out)
-        self.assertTrue([entry for entry in vehicle.log("sent")
-                         if entry["message"] == "TERRAIN_REQUEST"])
-
-    def test_usage(self):
-        result = self.planned()
-        for options, words in ((("--arcs", "loiter"), "give --arcs points"),):
-            code, _, err = self.altiplan("fly", result, "--link", "udp:127.0.0.1:9", *options)
-            self.assertEqual(code, 2)
-            self.assertIn(words, err)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """labels_test.py PROGRAM PLUGINS: in pages of real results, and in the report of a study, no text is
 cut and none lies on another one, on wide and narrow screens, light and dark, at rest and in flight. With
-ALTIPLAN_NIGHTLY=1 each screen is both light and dark, and flights are looked at in more places.
+ALTIPLAN_NIGHTLY=1 more results, each screen both light and dark, and flights in more places.
 
 `labels_test.py PROGRAM PLUGINS Views.test_ridge` runs one case; skipped without Chromium. With
 ALTIPLAN_PICTURES in the environment, pictures of all of them go into that folder."""
@@ -23,7 +23,9 @@ PICTURES = os.environ.get("ALTIPLAN_PICTURES")
 CONFIGS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "configs")
 SIZES = ((1400, 900), (390, 800))
 SCHEMES = ("light", "dark")
-if os.environ.get("ALTIPLAN_NIGHTLY"):
+NIGHTLY = os.environ.get("ALTIPLAN_NIGHTLY")
+by_night = unittest.skipUnless(NIGHTLY, "by night")
+if NIGHTLY:
     SCREENS = [(size, scheme) for size in SIZES for scheme in SCHEMES]
     PLACES, FOLLOWED, SECONDS = (0.3, 0.75, 1), (0.02, 0.6, 0.7, 1), (0, 1, 2.5, 20, 30, 33, 43.9)
 else:  # colours move no text
@@ -116,6 +118,7 @@ class Views(Labels):
         self.look("ridge", page, ("Start", "Goal", "N", "x east, km", "y north, km", "5", "1,000"),
                   ("", "?flat"))
 
+    @by_night
     def test_two_results(self):
         """Of colonies in a paper's plane world."""
         results = [self.run_pipeline(name, os.path.join(CONFIGS, "pipelines", f"{name}.yaml"))
@@ -124,6 +127,7 @@ class Views(Labels):
         self.look("ants", page, ("Start", "Goal", "N", "x east, m", "y north, m", "200"),
                   ("", "?flat"), flies=False)
 
+    @by_night
     def test_city(self):
         pipeline = os.path.join(self.folder, "city.yaml")
         with open(pipeline, "w", encoding="utf-8") as file:
@@ -131,6 +135,7 @@ class Views(Labels):
         page = self.page_of(self.run_pipeline("city", pipeline))
         self.look("city", page, ("Start", "Goal", "N", "≤ 16 m beside"))
 
+    @by_night
     def test_wing(self):
         result = self.run_pipeline("wing", os.path.join(CONFIGS, "pipelines", "wing_ridge.yaml"))
         self.look("wing", self.page_of(result), ("Start", "Goal", "N", "x east, km"))
