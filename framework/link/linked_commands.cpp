@@ -112,12 +112,16 @@ void LinkedVehicle::ask(FlightMode mode) {
   if (!is_in_own_mode()) {
     return;  // its pilot's, or a failsafe's
   }
+  if (asks_ > 0 && feed_.heartbeats() == heartbeats_at_ask_) {
+    return;  // until a heartbeat shows that its pilot has not switched since
+  }
   if (++asks_ > kMaxAsks) {
     give_up_in_hold("the vehicle does not change its mode, " + feed_.mode_name() +
                     feed_.quoted_text());
   }
   feed_.send(mode_command(feed_.vehicle(), mode));
   ask_at_ = time_now() + kAskAgain;
+  heartbeats_at_ask_ = feed_.heartbeats();
 }
 
 void LinkedVehicle::stream(const SetPoint& wanted, const State& now) {

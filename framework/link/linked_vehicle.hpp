@@ -112,6 +112,7 @@ class LinkedVehicle final : public host::FlownVehicle {
   bool is_confirmed_ = false;
   bool hands_back_ = false;
   Time ask_at_{0};
+  int heartbeats_at_ask_ = 0;
   int asks_ = 0;
   std::optional<double> height_;            ///< metres, of the last command of the pilot
   double streamed_s_ = 0;                   ///< time of the last set-point

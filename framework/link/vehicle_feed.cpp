@@ -22,6 +22,7 @@ void VehicleFeed::take(const Message& message) {
   if (const auto* heartbeat = std::get_if<Heartbeat>(&message)) {
     vehicle_.heartbeat = *heartbeat;
     mode_ = mode_of(*heartbeat);
+    ++heartbeats_;
   } else if (const auto* current = std::get_if<MissionCurrent>(&message)) {
     current_item_ = current->seq;
     mission_ = {current->mission_id, current->total};

@@ -29,6 +29,8 @@ class VehicleFeed {
   const Vehicle& vehicle() const { return vehicle_; }
   /// By its last heartbeat: PX4's acknowledgement of a change says nothing.
   FlightMode mode() const { return mode_; }
+  /// How many of them have arrived.
+  int heartbeats() const { return heartbeats_; }
   std::string mode_name() const;
   bool is_armed() const;
   /// Number of the mission's item, by the last report.
@@ -59,6 +61,7 @@ class VehicleFeed {
   Vehicle vehicle_;
   const World& world_;
   FlightMode mode_ = FlightMode::other;
+  int heartbeats_ = 0;
   std::optional<int> current_item_;
   std::optional<int> reached_item_;
   using MissionKey = std::pair<std::uint32_t, std::uint16_t>;
