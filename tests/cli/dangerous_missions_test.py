@@ -105,6 +105,7 @@ MISSIONS = [
     ("rates of climb that are changed", COPTER, [off(), do(178, 2, 0.2), way(100, 0, 90)], None, {}, "rates of climb"),
     ("a VTOL that slows down beyond its landing", PX4_VTOL,
      [to(84, 300, 0, 50), way(900, 0), to(85, 1500, 0, 0)], (1520, -30, 1560, 30, 0, 2000), {}, "change to hover"),
+    ("a return before anything is flown", VTOL, [HOME, way(600, 0), way(0, 600)], None, {}, "the mission ends before"),
     ("wind", PLANE, [way(-1500, 0, 100), way(0, 0, 100), way(0, 1500, 100), HOME], (70, 20, 100, 120, 0, 2000),
      {"WIND": 4}, "clearance"),
 ]

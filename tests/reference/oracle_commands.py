@@ -189,11 +189,14 @@ def faults(mission):
             found.append(f"{name}: stops the engine")
         if item.command == 400 and does == "E" and item.param(1) == 0:
             found.append(f"{name}: disarms")
-        if mission.is_px4 and not item.goes_on:
+        if mission.is_px4 and not item.goes_on and item is not mission.items[-1]:
             found.append(f"{name}: autoContinue is false, the mission stops there")
         if mission.is_px4 and item.command == 179 and item.param(1) != 1:
             found.append(f"{name}: home set to a place that is read unscaled")
-        if mission.kind == "AF" and item.command == 22:
+        before = mission.items[item.number - 2] if item.number > 1 else None
+        is_above = before is not None and before.command == 16 and before.frame == item.frame != 10 and (
+            before.alt > item.alt + 3)  # it ends at once
+        if mission.kind == "AF" and item.command == 22 and not is_above:
             unjudged.append(f"{name}: take-off along an unknown course")
         if mission.kind == "QP" and item.command in TAKEOFFS and item.frame in (0, 2, 5):
             found.append(f"{name}: take-off of a QuadPlane above the sea")

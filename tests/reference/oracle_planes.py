@@ -127,7 +127,16 @@ class PlaneWalk(Walk):
             k = int(np.searchsorted(along, leg.before))
             end = np.array([*points[min(k, len(points) - 1)], z[min(k, len(z) - 1)]])
             spread = abs(start[2] - leg.a[2]) + abs(end[2] - leg.a[2])
-            self.pieces.append(Piece(leg.item.number, phase, samples(start, end), 0.5, spread + 0.5, self.time[0]))
+            chord = samples(start, end)
+            # A turn is tighter than its chord: somewhere between that and the legs.
+            from_corner = chord[:, :2] - leg.a[:2]
+            to_legs = []
+            for other in (start, end):
+                way = (other - leg.a)[:2] / max(1e-9, math.dist(other[:2], leg.a[:2]))
+                along_it = np.clip(from_corner @ way, 0, None)
+                to_legs.append(np.linalg.norm(from_corner - np.outer(along_it, way), axis=1))
+            aside = np.minimum(*to_legs)
+            self.pieces.append(Piece(leg.item.number, phase, chord, aside + 0.5, spread + 0.5, self.time[0]))
         k = int(np.searchsorted(along, leg.run - leg.early, side="right")) - 1
         self.last = np.array([*points[k], z[k]])
 
@@ -510,6 +519,7 @@ class Px4Plane(PlaneWalk):
         if away <= 12:
             self.unknown_leg(item, "take-off where it stands")
             return
+        self.at[2] = max(self.at[2], self.ground_at(self.at[:2]))  # where it stands, wherever home is said to be
         rise = max(z - self.at[2], 0.0)
         near, far = (max(away, rise * self.speed / rate) for rate in (5.0, 2.0))
         reach = far if self.choice == "slow climbs" else near

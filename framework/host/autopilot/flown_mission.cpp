@@ -167,7 +167,11 @@ Walker::Way Walker::way_to(std::size_t n) const {
 void Walker::note_unflown(std::size_t n) {
   for (; n < commands_.size(); ++n) {
     if (formats::flies_to_position(task_of(n))) {
-      flight_.remark(Weight::note, "not_flown", n, "is not flown: the flight ends before it");
+      if (has_flown_) {
+        flight_.remark(Weight::note, "not_flown", n, "is not flown: the flight ends before it");
+      } else {
+        give_up(n, "is not flown: the mission ends before anything is");
+      }
       return;
     }
   }
