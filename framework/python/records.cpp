@@ -80,7 +80,8 @@ void add_leg(py::module_& module) {
        {"radius_m", "Optional[float]", "metres through the air"},
        {"heading_deg", "Optional[float]",
         "at the beginning, through the air, degrees clockwise from north"},
-       {"drift_m", "Optional[list[float]]", "[east, north] of the air during the leg (m)"}});
+       {"drift_m", "Optional[list[float]]", "[east, north] of the air during the leg (m)"},
+       {"hold_s", "Optional[float]", "time that the vehicle waits, None of a leg without a wait"}});
   add_text(leg, "Leg");
 }
 

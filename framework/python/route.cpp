@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "altiplan/constraint.hpp"
+#include "altiplan/leg_limits.hpp"
 #include "python/arrays.hpp"
 #include "python/records.hpp"
 
 namespace altiplan::python {
 namespace {
 
-constexpr py::ssize_t kLegNumbers = 12;  ///< from, to, turn, radius, heading, drift
+constexpr py::ssize_t kLegNumbers = 13;  ///< from, to, turn, radius, heading, drift, hold
 
 Vec3 finite_point(const Rows& rows, py::ssize_t i, const std::string& name) {
   Vec3 point = point_at(rows, i, name);
@@ -64,6 +65,7 @@ py::tuple reduced(const py::object& self) {
       *to++ = number;
     }
     to = std::copy_n(leg.drift.data(), 3, to);
+    *to++ = leg.hold_s;
   }
   const py::object make = py::module_::import("altiplan._values").attr("route_of_state");
   return py::make_tuple(make, py::make_tuple(points_of(self).attr("copy")(), legs));
@@ -86,8 +88,12 @@ std::shared_ptr<Route> route_of_state(const Typed<"ArrayLike">& points,
     leg.radius = number[7];
     leg.heading = number[8];
     leg.drift = Vec3(number + 9);
+    leg.hold_s = number[12];
     if (leg.turns() && !(leg.radius > 0)) {
       throw py::value_error("legs: expected a radius above 0");
+    }
+    if (!is_well_formed(leg)) {
+      throw py::value_error("legs: expected a wait above 0 s on a leg of no length, or none");
     }
     route->push_back(leg);
   }
@@ -98,7 +104,7 @@ std::string text_of(const Route& route) {
   return "<altiplan.Route of " + std::to_string(route.size()) +
          (route.size() == 1 ? " waypoint, " : " waypoints, ") +
          std::to_string(std::llround(length(route))) + " m" +
-         (route.is_straight() ? ">" : ", with turns>");
+         (route.is_straight() ? ">" : route.waits() ? ", with waits>" : ", with turns>");
 }
 
 /// numpy.asarray(route): numpy would else ask for one point at a time.

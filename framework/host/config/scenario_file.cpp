@@ -255,7 +255,10 @@ void FrameEntry::describe(Fields& f) {
 
 void MovingEntry::describe(Fields& f) {
   f("id", id).doc("name in results and events");
-  f("known", known).doc("false: not in the planners' world until it comes into sensing range");
+  f("known", known)
+      .doc(
+          "true: routes are planned and judged against it, in time; false: unknown until it comes "
+          "into sensing range; omitted: known in flight, and routes are not judged against it");
   f.plugin("moving", shape, parameters).doc("a solid in straight-line motion").required();
 }
 

@@ -165,7 +165,7 @@ struct MovingEntry {
   std::string shape;
   Value parameters;
   std::string id;
-  bool known = true;
+  std::optional<bool> known;
   void describe(Fields& f);
 };
 

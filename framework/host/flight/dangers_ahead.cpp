@@ -44,7 +44,13 @@ const std::string* Flight::danger_ahead(double from, double t, double speed, dou
   if (world_.fresh().empty() && !end_moved_ && request_.world->moving().empty()) {
     return danger;  // the route was planned around everything known
   }
+  double s = from;
   route_.path.for_each_leg(from, from + reach_, [&](const Vec3& a, const Vec3& b) {
+    if (const double wait_s = route_.path.wait_at(s); wait_s > 0) {
+      danger = danger == nullptr ? danger_on(a, t, a, t + wait_s, room) : danger;
+      t += wait_s;
+    }
+    s = route_.path.end_of_leg(s);
     const double t1 = t + (b - a).norm() / speed;
     if (danger == nullptr) {
       danger = danger_on(a, t, b, t1, room);

@@ -36,7 +36,7 @@ Flight::Flight(const FlightSetup& setup)
       world_(setup),
       request_(setup.request),
       truth_request_(setup.telemetry ? as_telemetry(setup.request) : setup.request),
-      route_{FlightPath(setup.route.chords(kChordTolerance)), 0, 0, {}},
+      route_{FlightPath(setup.route), 0, 0, {}},
       events_(setup.events),
       state_(first_state(setup)),
       before_(setup.request.before_start(state_.position)),
@@ -122,6 +122,11 @@ void Flight::take_off() {
       end_flight(RunStatus::not_reached, Reason::none, message);
       return;
     }
+  }
+  if (setup_.vehicle != nullptr && setup_.route.waits()) {
+    end_flight(RunStatus::not_reached, Reason::none,
+               "the route waits on its way, which is flown in simulations alone");
+    return;
   }
   state_ = vehicle_->take_off(request_, route_, state_);
   result_.track.front() = {state_.time_s, state_.position};

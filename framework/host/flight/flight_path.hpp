@@ -2,9 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
-#include "altiplan/route.hpp"
+#include "altiplan/constraint.hpp"
 #include "altiplan/wind.hpp"
 
 namespace altiplan::host {
@@ -12,7 +13,26 @@ namespace altiplan::host {
 /// The route still to be flown, parametrised by distance along it (m).
 class FlightPath {
  public:
-  explicit FlightPath(const Polyline& route) : points_(without_repeats(route)) { measure(); }
+  /// Turns as chords. A wait is kept until the path changes: whoever then flies has left the plan.
+  explicit FlightPath(const Route& route) {
+    std::vector<std::pair<std::size_t, double>> waits;  // after so many points
+    points_.assign(1, route.front());
+    for (std::size_t i = 0; i < route.leg_count(); ++i) {
+      const Leg leg = route.leg(i);
+      for (const Vec3& p : leg.chords(kChordTolerance)) {
+        if (p != points_.back()) {
+          points_.push_back(p);
+        }
+      }
+      if (leg.waits()) {
+        waits.emplace_back(points_.size() - 1, leg.hold_s);
+      }
+    }
+    measure();
+    for (const auto& [point, seconds] : waits) {
+      waits_.push_back({along_[point], seconds});
+    }
+  }
 
   double length() const { return along_.back(); }
   /// Horizontal distance along the path to position s.
@@ -27,6 +47,22 @@ class FlightPath {
     }
     const double share = (s - along_[i]) / (along_[i + 1] - along_[i]);
     return share <= 0 ? points_[i] : Vec3(points_[i] + share * (points_[i + 1] - points_[i]));
+  }
+  /// The seconds still to wait at s.
+  double wait_at(double s) const {
+    double seconds = 0;
+    for (const Wait& wait : waits_) {
+      seconds += wait.s == s ? wait.seconds : 0;
+    }
+    return seconds;
+  }
+  /// The vehicle has waited at s for so many of them.
+  void waited(double s, double seconds) {
+    for (Wait& wait : waits_) {
+      const double done = wait.s == s ? std::min(wait.seconds, seconds) : 0;
+      wait.seconds -= done;
+      seconds -= done;
+    }
   }
   /// The first waypoint after s; the last if there is none.
   const Vec3& next_waypoint(double s) const { return points_[next(s)]; }
@@ -150,9 +186,15 @@ class FlightPath {
   }
 
  private:
+  struct Wait {
+    double s;
+    double seconds;
+  };
+
   void measure() {
     along_.assign(1, 0);
     level_.assign(1, 0);
+    waits_.clear();
     end_direction_ = {1, 0, 0};
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
       const Vec3 way = points_[i + 1] - points_[i];
@@ -175,6 +217,7 @@ class FlightPath {
   Polyline points_;
   std::vector<double> along_;
   std::vector<double> level_;  ///< the same in plan view
+  std::vector<Wait> waits_;
   Vec3 end_direction_{1, 0, 0};
 };
 }  // namespace altiplan::host

@@ -82,7 +82,7 @@ void Flight::take_route(Route route, const Request& request) {
     } catch (const PluginError&) {  // the route stays unchanged
     }
   }
-  route_.path = FlightPath(route.chords(kChordTolerance));
+  route_.path = FlightPath(route);
   route_.restart();
   stuck_ = 0;
   end_moved_ = false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/flight/point_vehicle.hpp"
 
+#include <algorithm>
+
 namespace altiplan::host {
 namespace {
 
@@ -13,6 +15,16 @@ FlownTo PointVehicle::follow(RouteAhead& route, const State& from, double durati
   State now = from;
   double left = duration;
   while (left > kMinShare * duration) {
+    if (const double wait_s = route.path.wait_at(route.progress); wait_s > 0) {
+      const double dt = std::min(wait_s, left);
+      route.path.waited(route.progress, dt);
+      left -= dt;
+      now = {now.time_s + dt, now.position};
+      if (!report(now)) {
+        break;
+      }
+      continue;
+    }
     const Vec3 next = route.path.next_waypoint(route.progress);
     const Vec3 way = next - now.position;
     const double to_next = way.norm();

@@ -41,6 +41,16 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
   return "";
 }
 
+/// "the route waits 12.5 s at point 3"; "" if it does not wait.
+std::string first_wait(const Route& route) {
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    if (const Leg leg = route.leg(i); leg.waits()) {
+      return "the route waits " + with_decimals(leg.hold_s, 1) + " s at point " + std::to_string(i);
+    }
+  }
+  return "";
+}
+
 /// The mission without its items.
 formats::MissionFile frame_of(const ExportSource& source, const Placing& place, Format format) {
   formats::MissionFile file;
@@ -151,6 +161,10 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   if (const std::string problem = problem_of(mission, source, source.route, mission.request);
       !problem.empty()) {
     result.messages.push_back("not written: the route is not valid: " + problem);
+    return result;
+  }
+  if (const std::string wait = first_wait(source.route); !wait.empty()) {
+    result.messages.push_back("not written: " + wait + ", which no mission written here can say");
     return result;
   }
   if (source.times.empty()) {

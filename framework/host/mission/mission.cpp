@@ -27,6 +27,8 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
   for (std::size_t i = 0; i < config.scenario.moving.size(); ++i) {
     const MovingEntry& entry = config.scenario.moving[i];
     const Value& tree = config.scenario_tree.find("moving")->items[i];
+    const bool known = entry.known.value_or(true);
+    const bool planned = entry.known.value_or(false);
     if (entry.shape == "random") {
       RandomMoving random;
       bind(random, &entry.parameters);
@@ -40,13 +42,13 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
         const Vec3 direction(std::cos(heading) * std::cos(climb),
                              std::sin(heading) * std::cos(climb), std::sin(climb));
         all.push_back({entry.id + "_" + std::to_string(n + 1), Sphere{at, random.radius_m},
-                       direction * random.speed_mps, 0, entry.known});
+                       direction * random.speed_mps, 0, known, planned});
       }
       continue;
     }
     try {
       const MovingShape made = make_moving(entry.shape, entry.parameters, site);
-      all.push_back({entry.id, made.shape, made.velocity, 0, entry.known});
+      all.push_back({entry.id, made.shape, made.velocity, 0, known, planned});
     } catch (const ConfigError&) {
       throw;
     } catch (const Error& error) {

@@ -63,7 +63,16 @@ Leg leg_of(const Vec3& from, const Json& json, const std::string& place) {
                     found_text(json[key]));
       }
     }
+    if (is_given(json, "hold_s")) {
+      leg.hold_s = number_of(json, "hold_s", place);
+      if (!(leg.hold_s > 0) || leg.to != from) {
+        throw Error(place + ".hold_s: expected a time above 0, on a leg that ends where it begins");
+      }
+    }
     return leg;
+  }
+  if (is_given(json, "hold_s")) {
+    throw Error(place + ".hold_s: expected none on a turn, found " + found_text(json["hold_s"]));
   }
   if (kind != name(Leg::Kind::arc) && kind != name(Leg::Kind::trochoid)) {
     throw Error(place + ".kind: expected one of straight, arc, trochoid, found " +
@@ -109,6 +118,9 @@ Json legs_json(const Route& route) {
     json["radius_m"] = leg.turns() ? Json(leg.radius) : Json();
     json["heading_deg"] = leg.turns() ? Json(compass(leg.heading)) : Json();
     json["drift_m"] = leg.turns() ? Json{leg.drift.x(), leg.drift.y()} : Json();
+    if (leg.waits()) {
+      json["hold_s"] = leg.hold_s;
+    }
     all.push_back(std::move(json));
   }
   return all;

@@ -6,6 +6,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/measures.hpp"
 #include "host/judge/judge.hpp"
 
 namespace altiplan::host {
@@ -96,6 +97,11 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
     whole.route.append(part.route);
     if (part.status != PlanStatus::solved) {
       break;
+    }
+    if (avoids_moving(request)) {
+      for (std::size_t leg = 0; leg < part.route.leg_count(); ++leg) {
+        request.start.time_s += leg_duration(part.route.leg(leg), request);
+      }
     }
     request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
     request.start.velocity = velocity_at_end(whole.route, request.vehicle.speed_mps);

@@ -16,7 +16,8 @@ struct CheckResult {
   bool ok() const { return violations.empty(); }
 };
 
-/// Judges a route: ends, volume, level, every leg, every limit and constraint of the request.
+/// Judges a route: ends, volume, level, every leg, every limit and constraint of the request, and
+/// its distance in time from the moving obstacles that it is planned against.
 ALTIPLAN_API CheckResult check(const Route& route, const Request& request);
 
 /// True if the leg a–b, for a vehicle that reaches a by `before`, satisfies every constraint that
@@ -46,6 +47,16 @@ ALTIPLAN_API const Layer* body_meets(const std::optional<Approach>& before, cons
 /// True if it meets none; at less cost far from obstacles.
 ALTIPLAN_API bool body_ok(const std::optional<Approach>& before, const Leg& leg,
                           const Request& request);
+
+/// True if routes are planned against moving obstacles: the time then matters.
+ALTIPLAN_API bool avoids_moving(const Request& request);
+
+/// The moving obstacle, of those that routes are planned against, that comes nearer to the vehicle
+/// than allowed (limits.min_clearance, and the sphere around its body) on a leg that begins at
+/// `time_s`, in the time of request.start; null if none does. Exact where hits is; turns are judged
+/// by proof, as by leg_ok.
+ALTIPLAN_API const MovingObstacle* meets_moving(const Leg& leg, double time_s,
+                                                const Request& request);
 
 /// Violations of the leg, one sentence each; empty if and only if leg_ok. `index` becomes `at`.
 ALTIPLAN_API std::vector<Violation> leg_violations(const std::optional<Approach>& before,

@@ -17,7 +17,7 @@ struct Pose {
 /// Unit vector of a heading.
 inline Vec3 unit_heading(double heading) { return {std::cos(heading), std::sin(heading), 0}; }
 
-/// A leg of a route: straight, or a turn of constant radius and sense. A turn is a circle in the
+/// A leg of a route: straight, a wait in one place, or a turn of constant radius and sense. A turn is a circle in the
 /// air mass, and its height is linear in time: without wind an arc (of a helix, if it climbs), in
 /// wind a trochoid. All kinds share one parameter t in [0, 1], the fraction of the leg's time:
 ///   p(t) = from + circle(t) + t (drift + climb),  |p''(t)| = radius turn².
@@ -30,8 +30,12 @@ struct ALTIPLAN_API Leg {
   double radius = 0;    ///< metres, of the circle in the air mass; > 0 if the leg turns
   double heading = 0;   ///< radians, in the air mass at `from`; of a turn alone
   Vec3 drift{0, 0, 0};  ///< horizontal displacement of the air mass during a turn, metres
+  double hold_s = 0;    ///< seconds for which the vehicle waits at `from`, which is then `to`
 
   static Leg straight(const Vec3& from, const Vec3& to) { return {from, to}; }
+  static Leg hold(const Vec3& at, double seconds) {
+    return {at, at, 0, 0, 0, {0, 0, 0}, seconds};
+  }
   /// The turn that begins at a pose and changes the height by `climb`.
   static Leg turning(const Pose& from, double turn, double radius, double climb,
                      const Vec3& drift = Vec3::Zero());
@@ -40,6 +44,7 @@ struct ALTIPLAN_API Leg {
     return turn == 0 ? Kind::straight : drift.isZero(0) ? Kind::arc : Kind::trochoid;
   }
   bool turns() const { return turn != 0; }
+  bool waits() const { return hold_s != 0; }
   /// Position at a fraction of the leg's time; exactly `from` at 0 and `to` at 1.
   Vec3 at(double t) const;
   /// Derivative of the position by t: the displacement over the ground at that rate for a whole

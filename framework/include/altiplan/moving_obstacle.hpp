@@ -14,6 +14,7 @@ struct MovingObstacle {
   Vec3 velocity{0, 0, 0};
   double since_s = 0;
   bool known = true;
+  bool planned = false;  ///< known beforehand: routes keep off it, in time
 
   Shape at(double time_s) const { return moved(shape, velocity * (time_s - since_s)); }
 };

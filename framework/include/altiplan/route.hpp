@@ -13,8 +13,8 @@ namespace altiplan {
 /// Points joined by straight legs.
 using Polyline = std::vector<Vec3>;
 
-/// Waypoints joined by legs. Legs are straight unless appended as turns: a polyline is a route as
-/// it is. The waypoints are read like a vector's elements.
+/// Waypoints joined by legs. Legs are straight unless appended as turns or waits: a polyline is a
+/// route as it is. The waypoints are read like a vector's elements.
 class ALTIPLAN_API Route {
  public:
   Route() = default;
@@ -33,7 +33,7 @@ class ALTIPLAN_API Route {
 
   /// Makes all legs straight, and returns the waypoints to edit.
   Polyline& edit() {
-    turns_.clear();
+    legs_.clear();
     return waypoints_;
   }
   /// Appends a straight leg, or the first waypoint.
@@ -46,11 +46,14 @@ class ALTIPLAN_API Route {
   /// The legs between two waypoints.
   Route part(std::size_t first, std::size_t last) const;
 
-  bool is_straight() const { return turns_.empty(); }
+  /// True if the waypoints say all: no leg turns or waits.
+  bool is_straight() const { return legs_.empty(); }
+  /// True if the vehicle waits somewhere.
+  bool waits() const;
   std::size_t leg_count() const { return empty() ? 0 : size() - 1; }
   /// The leg from waypoint i to the next one.
   Leg leg(std::size_t i) const {
-    return is_straight() ? Leg::straight(waypoints_[i], waypoints_[i + 1]) : turns_[i];
+    return is_straight() ? Leg::straight(waypoints_[i], waypoints_[i + 1]) : legs_[i];
   }
   /// The route as straight legs: turns are replaced by chords at most `tolerance` metres from them.
   Polyline chords(double tolerance) const;
@@ -59,7 +62,7 @@ class ALTIPLAN_API Route {
 
  private:
   Polyline waypoints_;
-  std::vector<Leg> turns_;  ///< every leg of a route that turns; else empty
+  std::vector<Leg> legs_;  ///< every leg of a route that turns or waits; else empty
 };
 
 /// Sum of leg lengths, metres.
@@ -67,7 +70,7 @@ ALTIPLAN_API double length(const Polyline& points);
 ALTIPLAN_API double length(const Route& route);
 /// The points without consecutive repetitions.
 ALTIPLAN_API Polyline without_repeats(const Polyline& points);
-/// The route without straight legs of length zero.
+/// The route without straight legs of length zero that do not wait.
 ALTIPLAN_API Route without_repeats(const Route& route);
 
 /// Where a vehicle comes from, and its heading, on reaching the first point of a leg. Legs without

@@ -9,7 +9,8 @@ namespace altiplan {
 /// Improves a route and keeps its ends.
 /// Contract: 1. First and last points stay. 2. The worst excess of each constraint does not grow; a
 /// valid route stays valid. 3. Straight routes of one or two points are returned unchanged. 4.
-/// Under an objective a valid route's cost does not grow: smooth sees to it.
+/// Under an objective a valid route's cost does not grow: smooth sees to it, and that no moving
+/// obstacle is met; a route that waits is returned unchanged.
 class ALTIPLAN_API Smoother {
  public:
   virtual ~Smoother();

@@ -118,6 +118,9 @@ class Leg:
     @property
     def drift_m(self) -> Optional[list[float]]:
         """[east, north] of the air during the leg (m)"""
+    @property
+    def hold_s(self) -> Optional[float]:
+        """time that the vehicle waits, None of a leg without a wait"""
     def to_dict(self) -> dict[str, Any]:
         """All of it as a dict, as in result.json."""
     def __eq__(self, other: object) -> bool: ...

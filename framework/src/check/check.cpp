@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "leg_judge.hpp"
+#include "moving.hpp"
 #include "words.hpp"
 
 namespace altiplan {
@@ -141,6 +142,9 @@ CheckResult check(const Route& route, const Request& request) {
         turn_angle_horizontal(arrival, other) < turn_angle_horizontal(arrival, *course);
     check_course(arrival, is_other ? other : *course, "goal_heading", route.size() - 1,
                  "the angle between the course on arrival and the goal's", found);
+  }
+  for (Violation& violation : moving_violations(route, request)) {
+    found.push_back(std::move(violation));
   }
   const double total = length(route);
   if (total > request.limits.max_route_length + kLengthTolerance) {

@@ -31,7 +31,7 @@ class LegJudge {
         at_(at),
         report_(report) {}
 
-  /// A turn, or a straight leg as above.
+  /// A turn, a wait, or a straight leg as above.
   LegJudge(const std::optional<Approach>& before, const Leg& leg, const Request& request,
            std::size_t at, const Report& report)
       : LegJudge(before, leg.from, leg.to, request, at, report) {
@@ -39,6 +39,7 @@ class LegJudge {
       turn_ = &leg;
       leg_ = leg.track(0);
     }
+    wait_ = leg.waits() ? &leg : nullptr;
   }
 
   void judge() const {
@@ -46,7 +47,9 @@ class LegJudge {
       report_([&] { return Violation{"finite", at_, 0, 0, "a coordinate is not finite"}; });
       return;
     }
-    if (const std::string problem = turn_ != nullptr ? turn_problem(*turn_) : "";
+    if (const std::string problem = wait_ != nullptr   ? wait_problem(*wait_, request_)
+                                    : turn_ != nullptr ? turn_problem(*turn_)
+                                                       : "";
         !problem.empty()) {
       report_([&] { return Violation{"route", at_, 0, 0, problem}; });
       return;
@@ -192,6 +195,9 @@ class LegJudge {
   }
 
   bool keeps_size() const {
+    if (wait_ != nullptr) {
+      return true;
+    }
     const double run = turn_ != nullptr ? turn_->length() : leg_.norm();
     return at_least(run, limits_.min_leg, kLengthTolerance, "leg_length", "the leg's length",
                     "m") &&
@@ -204,7 +210,7 @@ class LegJudge {
   }
 
   bool keeps_bend() const {
-    if (!before_ || (turn_ != nullptr && leg_.norm() < kLengthTolerance)) {
+    if (!before_ || wait_ != nullptr || (turn_ != nullptr && leg_.norm() < kLengthTolerance)) {
       return true;  // of no length: the next leg is judged by the approach to it (onward)
     }
     const bool on_the_spot = request_.vehicle.turns_on_the_spot;
@@ -429,6 +435,7 @@ class LegJudge {
   const Vec3& a_;
   const Vec3& b_;
   const Leg* turn_ = nullptr;  ///< null: the leg is straight
+  const Leg* wait_ = nullptr;  ///< null: the vehicle does not wait
   Vec3 leg_;                   ///< its displacement, or the rate at which a turn begins
   mutable Box box_;            ///< of the turn
   /// Of the ground within the required clearance of it; NaN: not yet asked.

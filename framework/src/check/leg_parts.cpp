@@ -24,6 +24,21 @@ std::string turn_problem(const Leg& turn) {
                                        " m from the end of its leg";
 }
 
+std::string wait_problem(const Leg& wait, const Request& request) {
+  if (!is_well_formed(wait)) {
+    return "a wait takes a time above 0, at one place, and does not turn";
+  }
+  if (request.vehicle.wing) {
+    return "an aeroplane cannot wait in one place";
+  }
+  const double wind = request.wind.at(wait.from.z()).norm();
+  return wind < request.air_speed() ? ""
+                                    : "the vehicle cannot wait at " + place(wait.from) +
+                                          ": the wind of " + fixed(wind) +
+                                          " m/s is as fast as it is (" +
+                                          fixed(request.air_speed()) + " m/s)";
+}
+
 Violation too_near(const Layer* layer, const Leg& leg, const Request& request, std::size_t at) {
   const double needed = required_clearance(request);
   const Polyline points = leg.chords(kChordTolerance / 10);

@@ -14,6 +14,8 @@ inline double required_clearance(const Request& request) {
 
 /// Why the figures of a turn describe none, or not the one to its end; "" if they do.
 std::string turn_problem(const Leg& turn);
+/// Why the vehicle cannot wait as the leg says; "" if it can.
+std::string wait_problem(const Leg& wait, const Request& request);
 
 /// The violation of a leg that `layer` blocks: of all blocking layers, by the one nearest to it.
 Violation too_near(const Layer* layer, const Leg& leg, const Request& request, std::size_t at);

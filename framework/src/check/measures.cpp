@@ -6,6 +6,7 @@
 #include "altiplan/ground.hpp"
 #include "altiplan/nearest_place.hpp"
 #include "deepest_place.hpp"
+#include "uniform_motion.hpp"
 
 namespace altiplan {
 namespace {
@@ -51,29 +52,15 @@ double leg_clearance(const Environment& environment, const Vec3& a, const Vec3& 
 }
 
 double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a, const Vec3& b) {
-  const double total = (b - a).norm();
-  if (vehicle.speed_near.empty()) {
-    return total / vehicle.speed_mps;
-  }
-  // Clearance changes by at most a metre per metre: the speed is constant until a threshold can be
-  // reached.
-  constexpr double kMinStep = 1;
   double time = 0;
-  double along = 0;
-  while (along < total) {
-    const double clearance = world.clearance(a + along / total * (b - a));
-    double step = kInfinity;
-    for (const SpeedNear& near : vehicle.speed_near) {
-      step = std::min(step, std::abs(clearance - near.within_m));
-    }
-    step = std::min(std::max(step, kMinStep), total - along);
-    time += step / vehicle.speed_at(clearance);
-    along += step;
-  }
+  at_its_speeds(world, vehicle, a, b, [&](double, double, double seconds) { time += seconds; });
   return time;
 }
 
 double leg_duration(const Leg& leg, const Request& request) {
+  if (leg.waits()) {
+    return leg.hold_s;
+  }
   if (leg.turns()) {
     return leg.air_length() / request.air_speed();
   }
@@ -113,6 +100,9 @@ void measure_turns(const Route& route, const Request& request, Measures& m) {
   std::optional<Approach> before;
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
+    if (leg.waits()) {
+      continue;
+    }
     if (before) {
       const Vec3 onto = leg.from + leg.track(0);
       const double angle = horizontal_turn(*before, leg.from, onto, on_the_spot);

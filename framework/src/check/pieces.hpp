@@ -9,12 +9,14 @@
 namespace altiplan {
 
 /// A piece of a turn by its chord a–b. Each point of the piece has a partner on the chord, and each
-/// point of the chord one on the piece, at the same height and at most `e` metres away.
+/// point of the chord one on the piece, at the same height and time and at most `e` metres away.
 struct Piece {
   Vec3 a;
   Vec3 b;
   double e;
   bool last;  ///< too short to be halved again
+  double begin;  ///< fractions of the leg's time
+  double end;
 };
 
 enum class Verdict { kept, violated, halve };
@@ -43,7 +45,7 @@ bool every_piece(const Leg& leg, const Decide& verdict) {
     const double e = leg.sagitta() * (end.t - begin.t) * (end.t - begin.t);
     const double middle = (begin.t + end.t) / 2;
     const bool last = e <= kShortest || middle <= begin.t || middle >= end.t;
-    switch (verdict(Piece{begin.p, end.p, e, last})) {
+    switch (verdict(Piece{begin.p, end.p, e, last, begin.t, end.t})) {
       case Verdict::kept:
         begin = end;
         ends.pop_back();

@@ -18,6 +18,6 @@ PlanResult held_to_contract(PlanResult result, const State& start, const Goal& g
 
 bool legs_are_well_formed(const Route& route);
 inline constexpr const char* kMalformedLeg =
-    "returns a leg with a number that is not finite, or a turn without a radius above 0 or of more "
-    "than a hundred circles";
+    "returns a leg with a number that is not finite, a turn without a radius above 0 or of more "
+    "than a hundred circles, or a wait that has a length";
 }  // namespace altiplan

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "altiplan/route.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace altiplan {
@@ -12,8 +13,8 @@ Vec3 turned(const Vec3& v, double angle) {
 }  // namespace
 
 void Route::push_back(const Vec3& to) {
-  if (!turns_.empty()) {
-    turns_.push_back(Leg::straight(back(), to));
+  if (!legs_.empty()) {
+    legs_.push_back(Leg::straight(back(), to));
   }
   waypoints_.push_back(to);
 }
@@ -22,13 +23,14 @@ void Route::push_back(const Leg& leg) {
   if (empty()) {
     waypoints_.push_back(leg.from);
   }
-  if (leg.turns() && is_straight()) {
+  const bool is_more = leg.turns() || leg.waits();
+  if (is_more && is_straight()) {
     for (std::size_t i = 0; i < leg_count(); ++i) {
-      turns_.push_back(Leg::straight(waypoints_[i], waypoints_[i + 1]));
+      legs_.push_back(Leg::straight(waypoints_[i], waypoints_[i + 1]));
     }
   }
-  if (leg.turns() || !is_straight()) {
-    turns_.push_back(leg);
+  if (is_more || !is_straight()) {
+    legs_.push_back(leg);
   }
   waypoints_.push_back(leg.to);
 }
@@ -51,12 +53,16 @@ Route Route::part(std::size_t first, std::size_t last) const {
   return route;
 }
 
+bool Route::waits() const {
+  return std::any_of(legs_.begin(), legs_.end(), [](const Leg& leg) { return leg.waits(); });
+}
+
 Polyline Route::chords(double tolerance) const {
   if (is_straight()) {
     return waypoints_;
   }
   Polyline points = {front()};
-  for (const Leg& leg : turns_) {
+  for (const Leg& leg : legs_) {
     const Polyline part = leg.chords(tolerance);
     points.insert(points.end(), part.begin() + 1, part.end());
   }
@@ -99,7 +105,7 @@ Route without_repeats(const Route& route) {
   Route out;
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
-    if (leg.turns() || leg.from != leg.to) {
+    if (leg.turns() || leg.waits() || leg.from != leg.to) {
       out.push_back(leg);
     }
   }

@@ -23,26 +23,39 @@ PlanResult Smoother::do_smooth_turns(const Route& route, const Request&) const {
 }
 
 namespace {
-/// The route as it was, where it is valid and the smoothed one costs more.
+PlanResult unchanged(const Route& route, const std::string& why) {
+  PlanResult result;
+  result.status = PlanStatus::solved;
+  result.message = why;
+  result.route = route;
+  return result;
+}
+
+/// The route as it was, where it is valid and the smoothed one costs more, or meets a moving
+/// obstacle.
 PlanResult without_loss(PlanResult result, const Route& before, const Request& request) {
-  const double cost = cost_of(before, request);
-  if (result.status != PlanStatus::solved || !costs_more(cost_of(result.route, request), cost) ||
-      !check(before, request).ok()) {
+  if (result.status != PlanStatus::solved) {
+    return result;
+  }
+  const bool costs =
+      request.objective && costs_more(cost_of(result.route, request), cost_of(before, request));
+  const bool meets = avoids_moving(request) && !check(result.route, request).ok();
+  if ((!costs && !meets) || !check(before, request).ok()) {
     return result;
   }
   result.route = before;
-  result.message = "left unchanged: every change found would cost more";
+  result.message = costs ? "left unchanged: every change found would cost more"
+                         : "left unchanged: the smoothed route violates a constraint in time";
   return result;
 }
 }  // namespace
 
 PlanResult Smoother::smooth(const Route& route, const Request& request) const {
   if (route.is_straight() && route.size() <= 2) {
-    PlanResult result;
-    result.status = PlanStatus::solved;
-    result.message = "nothing to smooth";
-    result.route = route;
-    return result;
+    return unchanged(route, "nothing to smooth");
+  }
+  if (route.waits()) {
+    return unchanged(route, "left unchanged: the route waits, and its times would change");
   }
   PlanResult result = guarded([&] {
     return route.is_straight() ? do_smooth(route.waypoints(), request)
@@ -62,6 +75,8 @@ PlanResult Smoother::smooth(const Route& route, const Request& request) const {
         std::string("the smoother violated the contract of its interface: ") + kMalformedLeg,
         Reason::contract);
   }
-  return request.objective ? without_loss(std::move(result), route, request) : result;
+  return request.objective || avoids_moving(request)
+             ? without_loss(std::move(result), route, request)
+             : result;
 }
 }  // namespace altiplan

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "altiplan/request.hpp"
+
+namespace altiplan {
+
+/// Calls `use(begin, end, seconds)`, in metres along the straight leg a–b, for each part that the
+/// vehicle flies at one speed, by its speed profile.
+template <class Use>
+void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, const Vec3& b,
+                   const Use& use) {
+  const double total = (b - a).norm();
+  if (vehicle.speed_near.empty()) {
+    use(0, total, total / vehicle.speed_mps);
+    return;
+  }
+  // Clearance changes by at most a metre per metre: the speed is constant until a threshold can be
+  // reached.
+  constexpr double kMinStep = 1;
+  double along = 0;
+  while (along < total) {
+    const double clearance = world.clearance(a + along / total * (b - a));
+    double step = kInfinity;
+    for (const SpeedNear& near : vehicle.speed_near) {
+      step = std::min(step, std::abs(clearance - near.within_m));
+    }
+    step = std::min(std::max(step, kMinStep), total - along);
+    use(along, along + step, step / vehicle.speed_at(clearance));
+    along += step;
+  }
+}
+
+/// Calls `use(a, t0, b, t1)` for each part of a straight leg, or of a wait, that begins at `time_s`
+/// and is in uniform straight motion; until it returns false. False if it did.
+template <class Use>
+bool in_uniform_motion(const Leg& leg, double time_s, const Request& request, const Use& use) {
+  if (leg.waits()) {
+    return use(leg.from, time_s, leg.to, time_s + leg.hold_s);
+  }
+  const Vec3 way = leg.to - leg.from;
+  bool goes_on = true;
+  const auto part = [&](double begin, double end, double seconds) {
+    const double t1 = time_s + seconds;
+    goes_on = goes_on && use(leg.from + begin * way, time_s,
+                             end == 1 ? leg.to : Vec3(leg.from + end * way), t1);
+    time_s = t1;
+  };
+  if (request.vehicle.wing || !request.wind.is_calm()) {
+    double begin = 0;
+    std::vector<double> ends = request.wind.crossings(leg.from.z(), leg.to.z());
+    ends.push_back(1);
+    for (const double end : ends) {
+      part(begin, end,
+           flight_time(leg.from + begin * way, leg.from + end * way, request.air_speed(),
+                       request.wind));
+      begin = end;
+    }
+    return goes_on;
+  }
+  const double total = way.norm();
+  at_its_speeds(*request.world, request.vehicle, leg.from, leg.to,
+                [&](double begin, double end, double seconds) {
+                  total > 0 ? part(begin / total, end / total, seconds) : part(0, 1, seconds);
+                });
+  return goes_on;
+}
+}  // namespace altiplan
