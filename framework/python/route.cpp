@@ -104,7 +104,9 @@ std::string text_of(const Route& route) {
   return "<altiplan.Route of " + std::to_string(route.size()) +
          (route.size() == 1 ? " waypoint, " : " waypoints, ") +
          std::to_string(std::llround(length(route))) + " m" +
-         (route.is_straight() ? ">" : route.waits() ? ", with waits>" : ", with turns>");
+         (route.is_straight() ? ">"
+          : route.waits()     ? ", with waits>"
+                              : ", with turns>");
 }
 
 /// numpy.asarray(route): numpy would else ask for one point at a time.

@@ -17,9 +17,10 @@ struct Pose {
 /// Unit vector of a heading.
 inline Vec3 unit_heading(double heading) { return {std::cos(heading), std::sin(heading), 0}; }
 
-/// A leg of a route: straight, a wait in one place, or a turn of constant radius and sense. A turn is a circle in the
-/// air mass, and its height is linear in time: without wind an arc (of a helix, if it climbs), in
-/// wind a trochoid. All kinds share one parameter t in [0, 1], the fraction of the leg's time:
+/// A leg of a route: straight, a wait in one place, or a turn of constant radius and sense. A turn
+/// is a circle in the air mass, and its height is linear in time: without wind an arc (of a helix,
+/// if it climbs), in wind a trochoid. All kinds share one parameter t in [0, 1], the fraction of
+/// the leg's time:
 ///   p(t) = from + circle(t) + t (drift + climb),  |p''(t)| = radius turn².
 struct ALTIPLAN_API Leg {
   enum class Kind { straight, arc, trochoid };
@@ -33,9 +34,7 @@ struct ALTIPLAN_API Leg {
   double hold_s = 0;    ///< seconds for which the vehicle waits at `from`, which is then `to`
 
   static Leg straight(const Vec3& from, const Vec3& to) { return {from, to}; }
-  static Leg hold(const Vec3& at, double seconds) {
-    return {at, at, 0, 0, 0, {0, 0, 0}, seconds};
-  }
+  static Leg hold(const Vec3& at, double seconds) { return {at, at, 0, 0, 0, {0, 0, 0}, seconds}; }
   /// The turn that begins at a pose and changes the height by `climb`.
   static Leg turning(const Pose& from, double turn, double radius, double climb,
                      const Vec3& drift = Vec3::Zero());

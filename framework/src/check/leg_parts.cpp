@@ -32,11 +32,10 @@ std::string wait_problem(const Leg& wait, const Request& request) {
     return "an aeroplane cannot wait in one place";
   }
   const double wind = request.wind.at(wait.from.z()).norm();
-  return wind < request.air_speed() ? ""
-                                    : "the vehicle cannot wait at " + place(wait.from) +
-                                          ": the wind of " + fixed(wind) +
-                                          " m/s is as fast as it is (" +
-                                          fixed(request.air_speed()) + " m/s)";
+  return wind < request.air_speed()
+             ? ""
+             : "the vehicle cannot wait at " + place(wait.from) + ": the wind of " + fixed(wind) +
+                   " m/s is as fast as it is (" + fixed(request.air_speed()) + " m/s)";
 }
 
 Violation too_near(const Layer* layer, const Leg& leg, const Request& request, std::size_t at) {

@@ -54,8 +54,8 @@ Nearest nearest_in(const MovingObstacle& obstacle, Vec3 a, double t0, Vec3 b, do
   while (t1 - t0 > kFineTime) {
     const double middle = (t0 + t1) / 2;
     const Vec3 half = (a + b) / 2;
-    const bool is_first = separation(obstacle, a, t0, half, middle) <=
-                          separation(obstacle, half, middle, b, t1);
+    const bool is_first =
+        separation(obstacle, a, t0, half, middle) <= separation(obstacle, half, middle, b, t1);
     (is_first ? t1 : t0) = middle;
     (is_first ? b : a) = half;
   }

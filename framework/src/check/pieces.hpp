@@ -14,7 +14,7 @@ struct Piece {
   Vec3 a;
   Vec3 b;
   double e;
-  bool last;  ///< too short to be halved again
+  bool last;     ///< too short to be halved again
   double begin;  ///< fractions of the leg's time
   double end;
 };

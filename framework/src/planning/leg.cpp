@@ -107,7 +107,7 @@ Box Leg::box() const {
 
 Leg Leg::piece(double begin, double end) const {
   const double share = end - begin;
-  return {at(begin),     at(end), share * turn, radius, heading + begin * turn,
+  return {at(begin),     at(end),       share * turn, radius, heading + begin * turn,
           share * drift, share * hold_s};
 }
 
@@ -121,7 +121,9 @@ std::vector<Vec3> Leg::chords(double tolerance) const {
   return points;
 }
 
-Leg Leg::reversed() const { return {to, from, -turn, radius, heading + turn + kPi, -drift, hold_s}; }
+Leg Leg::reversed() const {
+  return {to, from, -turn, radius, heading + turn + kPi, -drift, hold_s};
+}
 bool Loiter::passes(const Vec3& centre, const Vec3& p) const {
   return std::abs(std::hypot(p.x() - centre.x(), p.y() - centre.y()) - radius) <=
              kLengthTolerance &&
