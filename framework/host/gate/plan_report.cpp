@@ -383,6 +383,15 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
     report.findings.push_back(std::move(finding));
   }
 }
+/// The times at which a mission is flown are a band, which begins whenever it is started.
+Finding moving_not_judged() {
+  Finding finding;
+  finding.violation.constraint = "moving";
+  finding.violation.message =
+      "how near the mission comes to the scenario's moving obstacles is not judged";
+  finding.is_unjudged = true;
+  return finding;
+}
 }  // namespace
 
 TimeSpan time_of(const std::vector<FlownMission>& flights) {
@@ -422,6 +431,10 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
     Gate(plan, world, options).judge(report);
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
+  }
+  if (avoids_moving(request)) {
+    report.findings.push_back(moving_not_judged());
+    request.world = std::make_shared<const World>(world.truth.with_moving({}));
   }
   const Route& route = report.imported.route;
   if (options.own_ends) {

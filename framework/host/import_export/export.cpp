@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
 #include "host/base/words.hpp"
 #include "host/import_export/export_attempt.hpp"
@@ -184,6 +185,11 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     notes.emplace_back(
         "warning: an aeroplane climbs to the start from its runway, in a straight line: that climb "
         "is not judged here; altiplan check judges it from home");
+  }
+  if (avoids_moving(mission.request)) {
+    notes.emplace_back(
+        "warning: the moving obstacles were judged for a route that leaves its first point at the "
+        "scenario's start");
   }
   if (options.format && !home_altitude(mission, options, source.route.front())) {
     notes.emplace_back(
