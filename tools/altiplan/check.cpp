@@ -197,6 +197,8 @@ void add_check(App& app, Action& action) {
   add_mission_options(command, arguments.mission)->excludes(scenario)->needs(result);
   route->needs(scenario);
   *outputs = add_outputs(command, arguments.mission.plan);
+  outputs->push_back(command.add_flag("--returns", arguments.mission.plan.returns,
+                                      "also judge the failsafe return from every second of it"));
   add_plugin_path(command, arguments.overrides);
   command.add_flag("--json", arguments.mission.plan.json, "print as JSON");
   set_example(command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");

@@ -17,6 +17,7 @@
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
 #include "host/gate/plan_report.hpp"
+#include "host/gate/returns.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 #include "plan_world.hpp"
@@ -64,9 +65,11 @@ std::string figures_of(const PlanReport& report) {
 }
 
 void print(const PlanReport& report, const host::Mission& world) {
-  const Color color = report.passed() ? Color::good : Color::bad;
-  std::printf("%s: %s\n", painted(stdout, color, word_of(report.verdict())).c_str(),
-              figures_of(report).c_str());
+  const auto colored = [](host::Verdict verdict) {
+    const Color color = verdict == host::Verdict::pass ? Color::good : Color::bad;
+    return painted(stdout, color, word_of(verdict));
+  };
+  std::printf("%s: %s\n", colored(report.verdict()).c_str(), figures_of(report).c_str());
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
     if (finding.at) {
@@ -76,9 +79,63 @@ void print(const PlanReport& report, const host::Mission& world) {
       std::printf("    cure: %s\n", cure_of(finding, report).c_str());
     }
   }
+  if (report.returns) {
+    std::printf("returns %s: %s\n", colored(report.returns->verdict).c_str(),
+                host::printable(report.returns->in_words()).c_str());
+    for (const host::RefusedReturn& refused : report.returns->refused) {
+      std::printf("  %s\n", host::printable(in_words(refused, report)).c_str());
+      if (refused.finding.at) {
+        std::printf("    worst at %s\n",
+                    host::place_in_words(*refused.finding.at, world.request).c_str());
+      }
+    }
+  }
   for (const std::string& note : report.notes) {
     std::printf("  note: %s\n", host::printable(note).c_str());
   }
+}
+
+const char* key_of(host::Verdict verdict) {
+  return verdict == host::Verdict::not_judged ? "not_judged" : word_of(verdict);
+}
+
+Json returns_json(const host::ReturnsReport& returns, const host::Mission& world) {
+  Json refused = Json::array();
+  for (const host::RefusedReturn& stretch : returns.refused) {
+    const Finding& finding = stretch.finding;
+    Json one{{"from_s", stretch.from_s},
+             {"to_s", stretch.to_s},
+             {"worst_s", stretch.worst_s},
+             {"item", finding.item},
+             {"items", finding.items},
+             {"part", finding.what},
+             {"rule", finding.violation.constraint},
+             {"value", finding.violation.value},
+             {"limit", finding.violation.limit},
+             {"unit", finding.violation.unit},
+             {"layer", finding.violation.layer},
+             {"zone", finding.zone},
+             {"message", finding.violation.message}};
+    if (finding.at) {
+      const auto [lon, lat] = world.truth.frame().to_lonlat(finding.at->x(), finding.at->y());
+      one["lonlat"] = {lon, lat};
+      one["altitude_m"] = finding.at->z();
+    }
+    refused.push_back(std::move(one));
+  }
+  Json parameters = Json::object();
+  for (const host::Parameters::Used& used : returns.parameters) {
+    parameters[used.name] = used.value;
+  }
+  const host::RefusedReturn* worst = returns.worst();
+  return Json{
+      {"verdict", key_of(returns.verdict)},
+      {"worst",
+       worst == nullptr ? Json() : Json{{"time_s", worst->worst_s}, {"item", worst->finding.item}}},
+      {"point_of_no_return_s", Json()},  // no battery is known
+      {"refused", refused},
+      {"not_judged", returns.unjudged},
+      {"parameters", parameters}};
 }
 
 /// [fastest, slowest]; null where nothing ends it.
@@ -128,16 +185,15 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
   for (const host::Parameters::Used& used : report.parameters) {
     parameters[used.name] = used.value;
   }
-  const host::Verdict verdict = report.verdict();
-  return Json{{"plan", report.file},
-              {"verdict", verdict == host::Verdict::not_judged ? "not_judged" : word_of(verdict)},
-              {"autopilots", autopilots},
-              {"parameters", parameters},
-              {"violations", all},
-              {"time_s", to_json(report.time)},
-              {"parts", parts_json(report)},
-              {"metrics", host::to_json(report.measures)},
-              {"notes", report.notes}};
+  Json json{{"plan", report.file},         {"verdict", key_of(report.verdict())},
+            {"autopilots", autopilots},    {"parameters", parameters},
+            {"violations", all},           {"time_s", to_json(report.time)},
+            {"parts", parts_json(report)}, {"metrics", host::to_json(report.measures)},
+            {"notes", report.notes}};
+  if (report.returns) {
+    json["returns"] = returns_json(*report.returns, world);
+  }
+  return json;
 }
 
 host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
@@ -221,7 +277,7 @@ std::vector<host::ChangedItem> changes_of(const formats::MissionFile& before,
 /// Writes the cured mission, judged again, or says why not.
 void fix(const PlanCheck& plan, const PlanReport& report, const std::string& text,
          const formats::MissionFile& mission, const host::Mission& world) {
-  if (report.passed()) {
+  if (report.findings.empty()) {
     warn(*plan.fixed + ": not written: the mission passes as it is");
     return;
   }
@@ -347,6 +403,11 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);
   });
+  if (plan.returns) {
+    judged.report.returns = busy("judging the returns", [&] {
+      return host::judge_returns(judged.mission, judged.world, plan.gate);
+    });
+  }
   add_notes(judged.report, judged.world);
   return judged;
 }

@@ -27,6 +27,7 @@ struct PlanCheck {
   std::optional<double> max_ground_distance_m;
   std::optional<std::string> start_time;
   std::optional<double> flown_s;  ///< for zones with hours; none: as long as the mission takes
+  bool returns = false;           ///< failsafe returns are judged, too
   bool json = false;
   std::optional<std::string> certificate;
   std::optional<std::string> junit;

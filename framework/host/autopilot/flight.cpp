@@ -214,4 +214,80 @@ void Flight::add_disc(const Destination& centre, double inner, double outer, dou
     }
   }
 }
+
+double Flight::bend(const Vec3& from, const Vec3& to) const {
+  if (!world_.frame().has_position() || (to - from).head<2>().norm() < 1) {
+    return 0;
+  }
+  const FlownLine line(world_.frame(), from, to, autopilot().is_px4());
+  const Vec3 middle = (from + to) / 2;
+  return (line.at(0.5) - middle).head<2>().norm() + line.doubt_m();
+}
+
+// The straight ways from a disc to a place lie between the outermost of lines that run side by side
+// or meet there; none is farther from the nearest than half of what is between these.
+void Flight::add_fan(const Whereabouts& from, double beside_m, const Eigen::Vector2d& to,
+                     const std::vector<Level>& levels, double reach) {
+  constexpr double kSpacing = 12;  // metres
+  const Eigen::Vector2d way = to - from.at;
+  const double length = way.norm();
+  const Eigen::Vector2d ahead =
+      length > 1e-6 ? Eigen::Vector2d(way / length) : Eigen::Vector2d(1, 0);
+  const Eigen::Vector2d left(-ahead.y(), ahead.x());
+  const double radius = from.radius_m + beside_m;
+  // The tangents that meet far away lie within lines that begin half as far again to the sides.
+  const bool meet = length > 3 * radius;
+  const double width = meet ? 1.5 * radius : radius;
+  const double begin = -radius;
+  const double end = meet ? length : std::max(length, radius);
+  const int gaps = int(std::ceil(2 * width / kSpacing));
+  const double between = gaps > 0 ? width / gaps : 0;
+  const double off = between + reach + bend({from.at.x(), from.at.y(), 0}, {to.x(), to.y(), 0});
+  for (int line = 0; line <= gaps; ++line) {
+    const double side = gaps > 0 ? width * (2.0 * line / gaps - 1) : 0;
+    const auto place = [&](double s, double z) {
+      const double share = meet ? (end - s) / (end - begin) : 1;
+      const Eigen::Vector2d p = from.at + s * ahead + side * share * left;
+      return Vec3(p.x(), p.y(), z);
+    };
+    Level before{begin, levels.front().low, levels.front().high};
+    const auto add_to = [&](const Level& next) {
+      if (next.at_m > before.at_m) {
+        add_strip(place(before.at_m, before.low), before.high, place(next.at_m, next.low),
+                  next.high, off);
+      }
+      before = next;
+    };
+    for (const Level& level : levels) {
+      if (level.at_m <= begin) {
+        before = {begin, level.low, level.high};
+      } else if (level.at_m >= end) {
+        const double share = (end - before.at_m) / (level.at_m - before.at_m);
+        add_to({end, before.low + share * (level.low - before.low),
+                before.high + share * (level.high - before.high)});
+        break;
+      } else {
+        add_to(level);
+      }
+    }
+    add_to({end, before.low, before.high});
+    if (end <= begin) {  // from a point to itself
+      add_strip(place(begin, before.low), before.high, place(begin, before.low), before.high, off);
+    }
+  }
+}
+
+void Flight::add_tower(const Whereabouts& place, double low, double high, double reach) {
+  constexpr double kSpacing = 12;  // metres
+  const double radius = place.radius_m;
+  const int strips = std::max(1, int(std::ceil(2 * radius / kSpacing)));
+  const double beside = radius / strips;
+  for (int n = 0; n < strips; ++n) {
+    const double y = beside * (2 * n + 1) - radius;
+    const double inner = std::max(std::abs(y) - beside, 0.0);  // where the disc is widest
+    const double x = std::sqrt(std::max(radius * radius - inner * inner, 0.0));
+    add_strip({place.at.x() - x, place.at.y() + y, low}, high,
+              {place.at.x() + x, place.at.y() + y, low}, high, beside + reach);
+  }
+}
 }  // namespace altiplan::host

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/autopilot/flown_mission.hpp"
+#include "host/autopilot/failsafe_return.hpp"
 
 /// \file What the motions of hovering vehicles and of wings have in common.
 namespace altiplan::host {
@@ -54,6 +54,19 @@ class Flight {
   void add_leg(const Vec3& from, double from_high, const Vec3& to, double to_high, double reach);
   /// Adds a vertical motion.
   void add_column(const Eigen::Vector2d& at, double low, double high, double reach);
+  /// Heights between which a vehicle is so far along its way; linear from one to the next, and as
+  /// the first and the last beyond them.
+  struct Level {
+    double at_m;
+    double low;
+    double high;
+  };
+  /// Adds the straight ways from anywhere within `beside_m` of a disc to a place. The heights of
+  /// the disc do not count; levels count from its centre.
+  void add_fan(const Whereabouts& from, double beside_m, const Eigen::Vector2d& to,
+               const std::vector<Level>& levels, double reach);
+  /// Adds what lies above a disc.
+  void add_tower(const Whereabouts& place, double low, double high, double reach);
   /// Adds a whole disc at heights from `low` to `high`, as circles that lie close; where a height
   /// above the ground is given, from that much below it to that much above.
   void add_disc(const Destination& centre, double inner, double outer, double low, double high);
@@ -66,6 +79,8 @@ class Flight {
 
  private:
   double grid_ground(const Eigen::Vector2d& at) const;
+  /// How far any of the lines that autopilots take for straight is from the chart's.
+  double bend(const Vec3& from, const Vec3& to) const;
 
   FlownMission& mission_;
   const World& world_;
@@ -85,6 +100,9 @@ class Hover {
 
   /// Straight up or down.
   void climb(std::size_t command, const char* what, double low_m, double high_m);
+  /// The same from anywhere in a place, and straight to another one.
+  void return_from(std::size_t command, const Whereabouts& place, double low_m, double high_m,
+                   const Eigen::Vector2d& to);
   void go(std::size_t command, const char* what, const Destination& to);
   /// In an arc of `angle` (radians, positive clockwise) about no given centre.
   void arc(std::size_t command, const Destination& to, double angle);
@@ -161,6 +179,12 @@ class Wing {
   void circle(std::size_t command, const char* what, const Destination& centre, double radius,
               bool clockwise, double turns, double seconds, const std::optional<Destination>& next,
               bool leaves_on_tangent);
+  /// Is anywhere in a place, on any heading.
+  void be_anywhere(const Whereabouts& place);
+  /// From there to another place, around which it circles, down to the least of heights. With
+  /// `circle_m` it climbs on a circle of that radius first.
+  void return_from(std::size_t command, const Whereabouts& place, const Destination& to,
+                   double circle_m, double circle_at_home_m, double least_there);
   /// Down to the ground on a line.
   void land(std::size_t command, const Destination& to);
   /// Along a line from the ground to a height.
@@ -189,6 +213,12 @@ class Wing {
   void cut_corner(const Leg& leg);
   void make_members(const std::function<Member(int, double)>& make);
   double turn_distance(double v, const Leg& leg) const;
+  /// Within which it turns toward any place from any heading.
+  double room_to_turn(double v) const;
+  /// From anywhere between two heights, where it has turned after so many metres, and its path is
+  /// at most `late_m` longer than its way.
+  std::vector<Flight::Level> levels_of_return(double low, double high, const Destination& to,
+                                              double turned_m, double late_m) const;
   /// Where a member was after each step of time.
   struct Passed {
     Vec3 at;
@@ -213,6 +243,9 @@ class Wing {
   /// How far it is below and above its height above the ground, on a circle.
   std::array<double, 2> lags_on_circle(const Destination& centre, double radius, double v) const;
   double max_turn_rate(double v) const;
+  /// Of the circle that is flown where the radius is given, and how far about its centre it leads.
+  double steady_radius(double radius, double z) const;
+  double widest_radius(double radius, double z) const;
   /// In metres a second over the ground, of the slowest (0) and the fastest (1).
   double true_speed(int speed, double z) const;
 

@@ -44,9 +44,10 @@ struct FlownPart {
   std::string what;         ///< "the climb after take-off"; "" for the way between two items
   Ground ground = Ground::kept_off;
   std::vector<Strip> strips;
-  double begin_s = 0;  ///< earliest, from the beginning of the flight
-  TimeSpan time;       ///< from the beginning of the flight to the end of the part
-  double until_s = 0;  ///< latest end of the last time that it is flown
+  double begin_s = 0;      ///< earliest, from the beginning of the flight
+  TimeSpan time;           ///< from the beginning of the flight to the end of the part
+  double until_s = 0;      ///< latest end of the last time that it is flown
+  bool is_return = false;  ///< to home or a rally point, where no failsafe changes it
 };
 
 /// What is to be said of a command, besides where it flies.

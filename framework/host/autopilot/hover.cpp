@@ -13,6 +13,7 @@ constexpr double kTerrainMargin =
     10;  // ArduPilot slows down before it is this far off (WP_TER_MARGIN)
 constexpr double kCornerSpacing = 4;  // metres between the chords of a corner
 constexpr double kAtEdge = 3;         // metres within which it is on a circle
+constexpr double kAtHome = 10;        // metres within which a return only goes up and down
 constexpr double kTouchDown = 10;     // metres above the ground from which it sinks slowly
 
 /// The height of the ground as ArduPilot's copter follows it: within its rates, with accelerations
@@ -90,6 +91,29 @@ void Hover::climb(std::size_t command, const char* what, double low_m, double hi
   previous_.reset();
   stops = true;
   is_on_ground = false;
+}
+
+void Hover::return_from(std::size_t command, const Whereabouts& place, double low_m, double high_m,
+                        const Eigen::Vector2d& to) {
+  const double off_line = flight_.autopilot().is_px4() ? 1 : std::min(reach(), 10.0);
+  const double climbs_m = std::max(low_m - high, 0.0);
+  if (low_m != low || high_m != high) {
+    // What the mission may pass is judged with it, and the ground lies below that.
+    flight_.begin(command, "the climb of its return").ground =
+        FlownPart::Ground::touched_from_above;
+    flight_.add_tower(place, std::min(low, low_m), std::max(high, high_m), std::min(reach(), 2.0));
+    flight_.take({climbs_m / climb_rate(), (high_m - low) / climb_rate() + 5});
+  }
+  low = low_m;
+  high = high_m;
+  const bool is_there = place.radius_m <= kAtHome && (to - place.at).norm() <= place.radius_m;
+  flight_.begin(command, "the way home").ground =
+      is_there ? FlownPart::Ground::touched_from_above : FlownPart::Ground::kept_off;
+  flight_.add_fan(place, 0, to, {{0, low, high}}, off_line);
+  const double along = (to - place.at).norm();
+  flight_.take({std::max(along - place.radius_m, 0.0) / speed_mps[1],
+                (along + place.radius_m) / speed_mps[0] + 6.5});
+  at = to;
 }
 
 void Hover::cut_corner(const Eigen::Vector2d& to, double z) {

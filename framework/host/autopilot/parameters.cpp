@@ -44,6 +44,7 @@ const Row kRows[] = {
     {"FENCE_AUTOENABLE", {0, 0, kNone, kNone}},
     {"FENCE_TYPE", {7, 4, kNone, kNone}},
     {"FENCE_ALT_MAX", {100, 100, kNone, kNone}},
+    {"FENCE_MARGIN", {2, 2, kNone, kNone}},
     {"FENCE_ALT_MIN", {-10, -10, kNone, kNone}},
     {"FENCE_RADIUS", {300, 300, kNone, kNone}},
     {"GF_MAX_VER_DIST", {kNone, kNone, 0, 0}},
@@ -83,6 +84,8 @@ const Row kRows[] = {
     {"MPC_LAND_CRWL", {kNone, kNone, 0.3, 0.3}},
     {"RTL_RETURN_ALT", {kNone, kNone, 30, 100}},
     {"RTL_DESCEND_ALT", {kNone, kNone, 30, 100}},
+    {"RTL_CONE_ANG", {kNone, kNone, 45, kNone}},
+    {"RTL_MIN_DIST", {kNone, kNone, 10, kNone}},
     {"RTL_TYPE", {kNone, kNone, 0, 1}},
     {"FW_AIRSPD_TRIM", {kNone, kNone, kNone, 15}},
     {"FW_AIRSPD_MIN", {kNone, kNone, kNone, 10}},
@@ -100,7 +103,7 @@ constexpr std::string_view kMayBeZero[] = {
     "FENCE_ALT_MIN",   "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",
     "ALT_SLOPE_MIN",   "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
     "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
-    "RTL_DESCEND_ALT", "RTL_TYPE"};
+    "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN"};
 
 void expect_possible(const Row& row, double value) {
   const std::string_view name = row.name;

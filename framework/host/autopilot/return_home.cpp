@@ -58,6 +58,7 @@ void Walker::return_home(std::size_t n) {
   const std::optional<Wing> wing = wing_;
   const bool is_winged = is_winged_;
   const TimeSpan begin = mission_.time;
+  const std::size_t begun = mission_.parts.size();
   TimeSpan end{kInfinity, 0};
   for (const Refuge& refuge : refuges()) {
     mission_.time = begin;
@@ -72,29 +73,92 @@ void Walker::return_home(std::size_t n) {
     end = {std::min(end.min_s, mission_.time.min_s), std::max(end.max_s, mission_.time.max_s)};
   }
   mission_.time = end;
+  for (std::size_t part = begun; part < mission_.parts.size(); ++part) {
+    mission_.parts[part].is_return = true;
+  }
   flight_.before = n;
 }
 
 std::vector<Walker::Refuge> Walker::refuges() const {
   constexpr double kAlike = 20;  // metres
+  const double doubt = failsafe_ ? failsafe_->radius_m : 0;
+  const auto distance = [&](const Refuge& refuge) { return (refuge.at - here()).norm(); };
+  const double limit_km = is_px4() ? 0 : parameter("RALLY_LIMIT_KM");
+  const double limit = limit_km > 0 ? 1000 * limit_km : kInfinity;
   std::vector<Refuge> all;
-  const double limit = is_px4() ? kInfinity : 1000 * parameter("RALLY_LIMIT_KM");
+  double nearest = kInfinity;  // of those that are certainly near enough
   for (const formats::MissionPoint& point : plan_.rally) {
-    const Refuge rally{to_local(point.lon, point.lat), point.altitude_m};
-    if ((rally.at - here()).norm() <= limit) {
+    const double base = point.frame == formats::AltitudeFrame::home ? home_z_ : 0;
+    const Refuge rally{to_local(point.lon, point.lat), point.altitude_m, base + point.altitude_m};
+    if (distance(rally) <= limit + doubt) {
       all.push_back(rally);
     }
+    if (distance(rally) <= limit - doubt) {
+      nearest = std::min(nearest, distance(rally));
+    }
   }
-  if (all.empty() || is_px4() || parameter("RALLY_INCL_HOME") != 0) {
-    all.push_back({home_, {}});
+  const Refuge home{home_, {}, home_z_};
+  if (is_px4() || parameter("RALLY_INCL_HOME") != 0) {
+    all.push_back(home);
+    nearest = std::min(nearest, distance(home));
+  } else if (!std::isfinite(nearest)) {
+    all.push_back(home);
   }
-  const auto distance = [&](const Refuge& refuge) { return (refuge.at - here()).norm(); };
-  double nearest = kInfinity;
-  for (const Refuge& refuge : all) {
-    nearest = std::min(nearest, distance(refuge));
-  }
-  std::erase_if(all, [&](const Refuge& refuge) { return distance(refuge) > nearest + kAlike; });
+  std::erase_if(
+      all, [&](const Refuge& refuge) { return distance(refuge) > nearest + kAlike + 2 * doubt; });
   return all;
+}
+
+// AC: RTL::compute_return_target. PX4: RTL::calculate_return_alt_from_cone_half_angle, with heights
+// above the place that it returns to; some versions take those of home.
+std::array<double, 2> Walker::return_heights(double z, double distance,
+                                             const Refuge& refuge) const {
+  const double doubt = failsafe_ ? failsafe_->radius_m : 0;
+  const double nearest = std::max(distance - doubt, 0.0);
+  if (is_px4()) {
+    const double above = parameter("RTL_RETURN_ALT");
+    double least = above;
+    double most = above;
+    if (autopilot_.is_copter()) {
+      // Beside the cone it returns at full height; within NAV_ACC_RAD at twice the distance.
+      const double cone = parameter("RTL_CONE_ANG");
+      const double near = parameter("NAV_ACC_RAD");
+      const double radius = std::max(near, parameter("RTL_MIN_DIST"));
+      const double slope = 1 / std::tan(radians(std::clamp(cone, 1.0, 89.0)));
+      if (cone > 0 && nearest <= radius) {
+        least = std::min(above, std::min(slope, 2.0) * nearest);
+      }
+      if (cone > 0 && distance + doubt <= radius) {
+        most = std::max(std::min(above, slope * (distance + doubt)), 2 * near);
+      } else if (cone > 0 && nearest <= radius) {
+        most = std::max(above, 2 * near);
+      }
+    }
+    return {std::max(z, std::min(home_z_, refuge.z) + least),
+            std::max(z, std::max(home_z_, refuge.z) + most)};
+  }
+  if (!autopilot_.is_copter()) {
+    return {std::max(z, home_z_ + 15), std::max(z, home_z_ + 15)};
+  }
+  const double present = z - home_z_;
+  const double full = std::max({present + parameter("RTL_CLIMB_MIN_M"), parameter("RTL_ALT_M"),
+                                refuge.height_m.value_or(0)});
+  constexpr int kHeights = 1;  // of the types of fence
+  const bool is_fenced = (parameter("FENCE_ENABLE") != 0 || parameter("FENCE_AUTOENABLE") != 0) &&
+                         (int(parameter("FENCE_TYPE")) & kHeights) != 0;
+  const auto at = [&](double metres) {
+    double height = full;
+    const double cone = parameter("RTL_CONE_SLOPE");
+    if (cone >= 0.5) {
+      height = std::min(height, std::max(cone * metres, present));
+    }
+    if (is_fenced) {
+      height = std::max(present,
+                        std::min(height, parameter("FENCE_ALT_MAX") - parameter("FENCE_MARGIN")));
+    }
+    return home_z_ + std::max(height, 0.3);
+  };
+  return {at(nearest), at(distance + doubt)};
 }
 
 void Walker::return_hover(std::size_t n, const Refuge& refuge) {
@@ -103,37 +167,25 @@ void Walker::return_hover(std::size_t n, const Refuge& refuge) {
     return;
   }
   const double distance = (refuge.at - hover_->at).norm();
-  const auto target = [&](double z) {
-    if (is_px4()) {
-      return std::max(z, home_z_ + parameter("RTL_RETURN_ALT"));
-    }
-    if (!autopilot_.is_copter()) {
-      return std::max(z, home_z_ + 15);
-    }
-    const double present = z - home_z_;
-    double height = std::max({present + parameter("RTL_CLIMB_MIN_M"), parameter("RTL_ALT_M"),
-                              refuge.height_m.value_or(0)});
-    const double cone = parameter("RTL_CONE_SLOPE");
-    if (cone >= 0.5) {
-      height = std::min(height, std::max(cone * distance, present));
-    }
-    return home_z_ + std::max(height, 0.3);
-  };
-  double lowest = target(hover_->low);
-  double highest = target(hover_->high);
+  double lowest = return_heights(hover_->low, distance, refuge)[0];
+  double highest = return_heights(hover_->high, distance, refuge)[1];
   if (former_home_z_) {  // its height above the former home may count
     const double shift = home_z_ - *former_home_z_;
-    lowest = std::min(lowest, target(hover_->low + shift));
-    highest = std::max(highest, target(hover_->high + shift));
+    lowest = std::min(lowest, return_heights(hover_->low + shift, distance, refuge)[0]);
+    highest = std::max(highest, return_heights(hover_->high + shift, distance, refuge)[1]);
   }
-  if (lowest != hover_->low || highest != hover_->high) {
-    hover_->climb(n, "the climb of its return", lowest, highest);
+  if (failsafe_) {
+    hover_->return_from(n, *failsafe_, lowest, highest, refuge.at);
+  } else {
+    if (lowest != hover_->low || highest != hover_->high) {
+      hover_->climb(n, "the climb of its return", lowest, highest);
+    }
+    Destination home;
+    home.at = refuge.at;
+    home.low = hover_->low;
+    home.high = hover_->high;
+    hover_->go(n, "the way home", home);
   }
-  Destination home;
-  home.at = refuge.at;
-  home.low = hover_->low;
-  home.high = hover_->high;
-  hover_->go(n, "the way home", home);
   hover_->land(n, "the landing at home");
 }
 
@@ -154,12 +206,22 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
       is_px4() ? parameter("RTL_RETURN_ALT") : refuge.height_m.value_or(parameter("RTL_ALTITUDE"));
   Wing::Leg leg;
   leg.to.at = refuge.at;
-  leg.to.low = is_px4()    ? std::max(wing_->high(), home_z_ + above)
-               : above < 0 ? wing_->high()
-                           : home_z_ + above;
-  leg.to.high = leg.to.low;
+  leg.to.low = std::min(home_z_, is_px4() ? refuge.z : home_z_) + above;
+  leg.to.high = std::max(home_z_, is_px4() ? refuge.z : home_z_) + above;
+  if (is_px4() || above < 0) {  // it does not sink
+    leg.to.low = std::max(failsafe_ ? wing_->low() : wing_->high(), is_px4() ? leg.to.low : -1e6);
+    leg.to.high = std::max(wing_->high(), is_px4() ? leg.to.high : -1e6);
+  }
   leg.at_once = wing_->low() < leg.to.low;
   const double own = parameter(is_px4() ? "NAV_LOITER_RAD" : "WP_LOITER_RAD");
+  const double given = is_px4() ? 0 : parameter("RTL_RADIUS");
+  const double radius = std::abs(given != 0 ? given : own);
+  if (failsafe_) {
+    const double least =
+        is_px4() ? std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT") : leg.to.low;
+    wing_->return_from(n, *failsafe_, leg.to, is_px4() ? std::abs(own) : 0, radius, least);
+    return;
+  }
   if (is_px4() && wing_->low() < leg.to.low) {
     Destination there;
     there.at = wing_->mean_place();
@@ -168,11 +230,9 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   }
   wing_->leave_track();
   wing_->go(n, "the way home", leg);
-  const double given = is_px4() ? 0 : parameter("RTL_RADIUS");
-  const double radius = std::abs(given != 0 ? given : own);
   if (is_px4() && autopilot_.airframe == Airframe::vtol) {
     Destination low_circle = leg.to;
-    low_circle.low = low_circle.high = home_z_ + parameter("RTL_DESCEND_ALT");
+    low_circle.low = low_circle.high = std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT");
     wing_->circle(n, "the circle at home", low_circle, radius, true, 1, 0, leg.to, false);
     hover_.emplace(flight_, refuge.at, low_circle.low);
     hover_->land(n, "the landing at home");
@@ -180,7 +240,7 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   }
   Destination circle = leg.to;
   if (is_px4()) {
-    circle.low = circle.high = home_z_ + parameter("RTL_DESCEND_ALT");
+    circle.low = circle.high = std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT");
   }
   wing_->circle(n, "the circle at home", circle, radius, own >= 0, 0, 0, {}, false);
   flight_.take({0, kInfinity});

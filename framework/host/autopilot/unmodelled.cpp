@@ -58,7 +58,6 @@ constexpr Unmodelled kUnmodelled[] = {
 /// The same where it matters to a return alone, or where commands follow a landing.
 constexpr Unmodelled kOfReturns[] = {
     {"RTL_ALT_TYPE", 0, 0, is_ardupilots_copter, "a return at a height above the ground"},
-    {"RTL_MIN_DIST", 10, 0, is_of_px4, "a return in a cone about home"},
 };
 constexpr Unmodelled kOfLandings[] = {
     {"MIS_OPTIONS", 0, 1 << 2, is_ardupilots_copter, "it takes off again after its landing"},
@@ -72,26 +71,26 @@ bool has_effect(const Unmodelled& one, Autopilot autopilot, const ParameterFile&
   return one.bits != 0 ? (std::llround(given->second) & one.bits) != 0
                        : std::abs(given->second - one.neutral) > 1e-3;
 }
+
+void remark(const Unmodelled& one, std::size_t n, Flight& flight, const FlightOptions& options) {
+  if (has_effect(one, flight.autopilot(), options.parameters)) {
+    flight.remark(Weight::not_judged, one.name, n,
+                  std::string(one.name) + ": " + one.what + ", which is not judged");
+  }
+}
 }  // namespace
 
 void Walker::remark_parameters() {
-  const auto remark = [&](const Unmodelled& one, std::size_t n) {
-    if (has_effect(one, autopilot_, options_.parameters)) {
-      flight_.remark(Weight::not_judged, one.name, n,
-                     std::string(one.name) + ": " + one.what + ", which is not judged");
-    }
-  };
   for (const Unmodelled& one : kUnmodelled) {
-    remark(one, 0);
+    remark(one, 0, flight_, options_);
   }
   for (std::size_t n = 0; n < commands_.size(); ++n) {
     const Task task = task_of(n);
-    for (const Unmodelled& one : task == Task::return_home ? std::span<const Unmodelled>(kOfReturns)
-                                                           : std::span<const Unmodelled>()) {
-      remark(one, n);
+    if (task == Task::return_home) {
+      remark_return_parameters(n);
     }
     if (task == Task::land && n + 1 < commands_.size()) {
-      remark(kOfLandings[0], n);
+      remark(kOfLandings[0], n, flight_, options_);
     }
     if (formats::is_above_ground(commands_[n].frame) && formats::flies_to_position(task) &&
         is_of_ardupilot(autopilot_) && options_.parameters.contains("TERRAIN_ENABLE") &&
@@ -101,6 +100,12 @@ void Walker::remark_parameters() {
                          " knows no ground (TERRAIN_ENABLE 0): it returns home, or "
                          "takes the height as one above home");
     }
+  }
+}
+
+void Walker::remark_return_parameters(std::size_t n) {
+  for (const Unmodelled& one : kOfReturns) {
+    remark(one, n, flight_, options_);
   }
 }
 

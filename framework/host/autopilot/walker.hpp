@@ -27,6 +27,8 @@ class Walker {
   }
 
   FlownMission fly();
+  /// As FailsafeReturns has it, after the mission was flown.
+  FlownMission return_from(std::size_t n, const Whereabouts& place);
 
  private:
   bool is_px4() const { return autopilot_.is_px4(); }
@@ -39,6 +41,8 @@ class Walker {
 
   /// Parameters of the file that change a flight in ways that are not modelled.
   void remark_parameters();
+  /// Those that change returns alone.
+  void remark_return_parameters(std::size_t n);
   /// The autopilot's own fence about home, where it is in force.
   void check_fences();
 
@@ -131,9 +135,13 @@ class Walker {
   struct Refuge {
     Eigen::Vector2d at{0, 0};
     std::optional<double> height_m;  ///< of a rally point, above home
+    double z = 0;                    ///< above sea level
   };
   /// Home or the nearest rally point, all those whose distances hardly differ.
   std::vector<Refuge> refuges() const;
+  /// The lowest and the highest, above sea level, at which a hovering vehicle returns that is so
+  /// high and so far away.
+  std::array<double, 2> return_heights(double z, double distance, const Refuge& refuge) const;
   void return_hover(std::size_t n, const Refuge& refuge);
   void return_wing(std::size_t n, const Refuge& refuge);
 
@@ -169,5 +177,6 @@ class Walker {
   Way way_to(std::size_t n) const;
   std::map<Way, Flown> flown_;
   int homes_set_ = 0;
+  std::optional<Whereabouts> failsafe_;  ///< where it returns from, in place of the mission
 };
 }  // namespace altiplan::host

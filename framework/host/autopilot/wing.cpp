@@ -444,6 +444,20 @@ std::array<double, 2> Wing::lags_on_circle(const Destination& centre, double rad
   return lags;
 }
 
+double Wing::steady_radius(double radius, double z) const {
+  // ArduPilot scales the radius, too.
+  const double ratio = flight_.autopilot().is_px4() ? 1 : air_ratio(z) * kWarmest;
+  const double v = true_speed(1, z);
+  return std::max(radius * ratio * ratio, v / (kWeakest * max_turn_rate(v)));
+}
+
+double Wing::widest_radius(double radius, double z) const {
+  const double steady = steady_radius(radius, z);
+  const bool is_tight = steady == steady_radius(0, z);
+  // Faster than its circle allows, it flies loops beside it.
+  return (is_tight ? 2 : kSwings) * steady;
+}
+
 void Wing::circle(std::size_t command, const char* what, const Destination& centre, double radius,
                   bool clockwise, double turns, double seconds,
                   const std::optional<Destination>& next, bool leaves_on_tangent) {
@@ -452,13 +466,9 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
       centre.above_ground ? flight_.ground(centre.at) + *centre.above_ground : centre.low;
   const double bottom = std::min(low(), z);
   const double top = std::max({high(), z, centre.high});
-  // ArduPilot scales the radius, too.
-  const double ratio = flight_.autopilot().is_px4() ? 1 : air_ratio(z) * kWarmest;
   const double v = true_speed(1, z);
-  const double tightest = v / (kWeakest * max_turn_rate(v));
-  const double steady = std::max(radius * ratio * ratio, tightest);
-  // Faster than its circle allows, it flies loops beside it.
-  const double widest = (steady == tightest ? 2 : kSwings) * steady;
+  const double steady = steady_radius(radius, z);
+  const double widest = widest_radius(radius, z);
   // A small circle is joined from within; a large one along a tangent, or beyond it.
   const double inner = radius < 150 ? 0 : 0.75 * radius;
   if (centre.above_ground) {
@@ -500,6 +510,94 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
   if (leaves_on_tangent) {
     from_.at = mean_place();
   }
+}
+
+void Wing::be_anywhere(const Whereabouts& place) {
+  start(place.at, place.low_m, place.at + Eigen::Vector2d(1, 0));
+  for (Member& member : members_) {
+    member.high = place.high_m;
+  }
+}
+
+// While it turns toward a place under the law of guidance, the bearing of the place falls from at
+// most half a turn. Above a right angle the turn has a constant radius r, and takes it aside by r;
+// below, its rate is v / r sin(bearing), which takes it aside by r times the angle. Before that, it
+// rolls.
+double Wing::room_to_turn(double v) const {
+  constexpr double kRolls = 1.5;  // seconds
+  const double weak = flight_.autopilot().is_px4() ? 1 : kWeakTurn;
+  const double radius = std::max(l1_s_ * v / (2.25 * weak), v / (kWeakest * max_turn_rate(v)));
+  return radius * (1 + kPi / 2) + kRolls * v;
+}
+
+std::vector<Flight::Level> Wing::levels_of_return(double low, double high, const Destination& to,
+                                                  double turned_m, double late_m) const {
+  const double fast = true_speed(1, std::max(high, to.high));
+  const double slow = true_speed(0, std::min(low, to.low));
+  std::vector<Flight::Level> levels;
+  const double top = std::max(high, to.high);
+  if (low < to.low) {  // It climbs at once: at a constant rate, then ever slower.
+    const double rate = kSlowClimb * climb_mps_;
+    const double tau = lag_s_ / (kSlowClimb * kSlowClimb);
+    const double last = std::min(rate * tau, to.low - low);
+    const double level_off = turned_m + (to.low - last - low) / rate * fast;
+    levels = {{turned_m, low, top}, {level_off, to.low - last, top}};
+    for (const double taus : {1.0, 2.0, 4.0, 8.0}) {
+      levels.push_back({level_off + taus * tau * fast, to.low - last * std::exp(-taus), top});
+    }
+    return levels;
+  }
+  // It sinks on a line to the place, or at once.
+  const double rate = kQuick * sink_mps_;
+  const double begin = -turned_m;
+  const double begun = std::max(to.low, low - rate * (begin + late_m) / slow);
+  return {{begin, begun, top}, {begin + (begun - to.low) / rate * slow, to.low, top}};
+}
+
+void Wing::return_from(std::size_t command, const Whereabouts& place, const Destination& to,
+                       double circle_m, double circle_at_home_m, double least_there) {
+  constexpr double kLevelled = 10;  // metres: PX4 leaves its circle so far from its height
+  const double bottom = low();
+  const double top = high();
+  const double fast = true_speed(1, std::max(top, to.high));
+  const double slow = true_speed(0, std::min(bottom, to.low));
+  double beside = room_to_turn(fast);
+  const bool circles = circle_m > 0 && bottom < to.low;
+  if (circles) {
+    beside += widest_radius(circle_m, to.high);
+  }
+  const double turned_m = beside + place.radius_m;
+  // The path until a place is at most so much longer than its way.
+  const double late_m = 1.3 * beside + place.radius_m + fast;
+  std::vector<Flight::Level> levels;
+  if (circles) {
+    const double level_m = (kLevelled / (kSlow * climb_mps_) + 3 * lag_s_) * fast;
+    levels = {{turned_m, bottom, std::max(top, to.high)},
+              {turned_m, to.low - kLevelled, std::max(top, to.high)},
+              {turned_m + level_m, to.low, std::max(top, to.high)}};
+  } else {
+    levels = levels_of_return(bottom, top, to, turned_m, late_m);
+  }
+  flight_.begin(command, "the way home");
+  flight_.add_fan(place, beside, to.at, levels, kBesideTrack);
+  const double length = (to.at - place.at).norm();
+  const double climb_s =
+      circles ? (to.high - bottom) / (kSlow * climb_mps_) + 2 * kPi * beside / slow : 0;
+  flight_.take({std::max(length - place.radius_m, 0.0) / fast, (length + late_m) / slow + climb_s});
+  // As it arrives: lower while it has climbed too little, higher while it has sunk too little.
+  double last_low = to.low;
+  for (const Flight::Level& level : levels) {
+    if (level.at_m >= length - place.radius_m) {
+      last_low = std::min(last_low, level.low);
+    }
+  }
+  const bool is_near = length < 3 * turned_m;
+  const double sunk = is_near ? 0 : std::max(0.0, kSlow * sink_mps_ / fast * (length - late_m));
+  const double lag_m = sink_mps_ * lag_s_ / (kSlow * kSlow);
+  const double last_high = std::min(std::max(top, to.high), std::max(to.high, top - sunk) + lag_m);
+  flight_.begin(command, "the circle at home");
+  flight_.add_tower({to.at, widest_radius(circle_at_home_m, to.high), 0, 0},
+                    std::min(is_near ? bottom : last_low, least_there), last_high, kBesideTrack);
 }
 
 void Wing::land(std::size_t command, const Destination& to) {

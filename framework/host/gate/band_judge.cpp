@@ -68,9 +68,13 @@ BandJudge::BandJudge(const Request& request)
   request_.limits.min_clearance = request.limits.min_clearance;
   request_.limits.min_ground_clearance = request.limits.min_ground_clearance;
   request_.limits.altitude = request.limits.altitude;
+  has_height_limits_ = request.limits.min_ground_clearance || !request.limits.altitude.empty();
+  do_edges_tell_ = request.constraints.empty();
   for (const Layer& layer : request.world->layers()) {
-    World& other = layer.environment->ground() != nullptr ? sky_ : ground_;
+    const Ground* ground = layer.environment->ground();
+    World& other = ground != nullptr ? sky_ : ground_;
     other = other.without(layer.id);
+    do_edges_tell_ = do_edges_tell_ && (ground == nullptr || ground->is_all());
   }
 }
 
@@ -148,6 +152,24 @@ std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_gr
              0});
       }
     }
+  }
+  return lines;
+}
+
+std::vector<BandJudge::Line> BandJudge::ground_lines_of(const Strip& strip) const {
+  const bool has_ground = request_.world->has_ground();
+  if (!do_edges_tell_) {
+    return lines_of(strip, has_ground);
+  }
+  Strip edge = strip;
+  edge.from_high_m = strip.from.z();
+  edge.to_high_m = strip.to.z();
+  std::vector<Line> lines = lines_of(edge, has_ground && has_height_limits_);
+  if (has_height_limits_) {
+    edge.from.z() = edge.from_high_m = strip.from_high_m;
+    edge.to.z() = edge.to_high_m = strip.to_high_m;
+    const std::vector<Line> top = lines_of(edge, has_ground);
+    lines.insert(lines.end(), top.begin(), top.end());
   }
   return lines;
 }
@@ -276,7 +298,7 @@ bool BandJudge::is_valid(const FlownPart& part) const {
                      !(part.ground == Ground::touched_along && is_below_ground(line.leg));
   };
   return std::all_of(part.strips.begin(), part.strips.end(), [&](const Strip& strip) {
-    const std::vector<Line> lines = lines_of(strip, request_.world->has_ground());
+    const std::vector<Line> lines = ground_lines_of(strip);
     return std::all_of(lines.begin(), lines.end(), is_line_valid);
   });
 }

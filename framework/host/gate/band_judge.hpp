@@ -54,6 +54,8 @@ class BandJudge {
   };
 
   static std::vector<Line> lines_of(const Strip& strip, bool has_ground);
+  /// Those that tell whether all are valid where there is ground alone.
+  std::vector<Line> ground_lines_of(const Strip& strip) const;
   const Requests& within(double reach_m) const;
   /// Looks at lines of the strips that may violate the sky, until `look` has seen enough (false):
   /// halves of the strips are held against it as a whole, until they are clear or one is left.
@@ -74,6 +76,10 @@ class BandJudge {
   Request request_;
   World sky_;     ///< its layers without ground
   World ground_;  ///< the others
+  /// These are solid below their ground, and nothing else counts there: what is above a valid line,
+  /// and below another one where heights are limited, is valid.
+  bool do_edges_tell_ = true;
+  bool has_height_limits_ = false;
   mutable std::map<double, Requests> by_reach_;
 };
 }  // namespace altiplan::host

@@ -47,7 +47,7 @@ std::string joined(const std::vector<std::string>& items) {
 }
 
 std::string violations(const PlanReport& report, const Request& request) {
-  if (report.passed()) {
+  if (report.findings.empty()) {
     return "";
   }
   std::string html = "<h2>" + counted(report.findings.size(), "violation") + "</h2>\n<table>\n" +
@@ -87,9 +87,9 @@ std::string parts(const PlanReport& report, const Request& request) {
 }
 
 /// The parameters that decided, and where they come from.
-std::string parameters(const PlanReport& report) {
+std::string parameters(const std::vector<Parameters::Used>& all) {
   std::string html;
-  for (const Parameters::Used& used : report.parameters) {
+  for (const Parameters::Used& used : all) {
     html += row({xml_text(used.name), rounded_text(used.value, 3),
                  used.is_given ? "parameter file" : "the autopilot's default"});
   }
@@ -111,6 +111,18 @@ std::string figures_of(const Finding& finding) {
   add("layer", violation.layer);
   add("zone", finding.zone);
   return text;
+}
+
+std::string returns(const PlanReport& report) {
+  if (!report.returns) {
+    return "";
+  }
+  std::string html = std::string("<h2>Failsafe returns: ") + word_of(report.returns->verdict) +
+                     "</h2>\n<p>" + xml_text(report.returns->in_words()) + "</p>\n<ul>\n";
+  for (const RefusedReturn& refused : report.returns->refused) {
+    html += "<li>" + xml_text(in_words(refused, report)) + "</li>\n";
+  }
+  return html + "</ul>\n" + parameters(report.returns->parameters);
 }
 
 /// The numbers of the items, or of the points where the file numbers nothing.
@@ -151,7 +163,9 @@ std::string place_in_words(const Vec3& p, const Request& request) {
 std::string certificate(const PlanReport& report, const Mission& world, const Basis& basis) {
   Request request = world.request;
   request.world = std::make_shared<const World>(world.truth);
-  const std::string verdict = word_of(report.verdict());
+  const std::string verdict =
+      word_of(report.verdict()) +
+      (report.returns ? std::string(", returns ") + word_of(report.returns->verdict) : "");
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>" +
                      verdict + ": " + xml_text(report.file) + "</title><style>" + kStyle +
                      "</style></head>\n<body>\n" + "<h1><span class=\"" +
@@ -164,10 +178,10 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
   html += row({"route", counted(measures.waypoints, "waypoint") + ", " + metres(measures.length_m) +
                             " m, " + report.height_in_words() + ", " + time_in_words(report.time) +
                             ", " + metres(measures.min_clearance_m) + " m from obstacles"});
-  html += "</table>\n" + violations(report, request);
+  html += "</table>\n" + violations(report, request) + returns(report);
   html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);
   html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);
-  return html + parts(report, request) + parameters(report) + list(report.notes) +
+  return html + parts(report, request) + parameters(report.parameters) + list(report.notes) +
          "</body>\n</html>\n";
 }
 
@@ -207,6 +221,20 @@ std::string junit(const PlanReport& report) {
     if (!is_told[std::size_t(&finding - report.findings.data())]) {
       add(joined(finding.items), [&](const Finding& other) { return &other == &finding; });
     }
+  }
+  if (report.returns) {
+    std::string failures;
+    for (const RefusedReturn& refused : report.returns->refused) {
+      failures += "      <failure type=\"return\" message=\"" +
+                  xml_text(in_words(refused, report)) + "\"/>\n";
+    }
+    for (const std::string& why : report.returns->unjudged) {
+      failures += "      <failure type=\"not_judged\" message=\"" + xml_text(why) + "\"/>\n";
+    }
+    ++count;
+    failed += failures.empty() ? 0 : 1;
+    cases += "    <testcase classname=\"" + xml_text(report.file) + "\" name=\"failsafe returns" +
+             (failures.empty() ? "\"/>\n" : "\">\n" + failures + "    </testcase>\n");
   }
   const std::string counts =
       " tests=\"" + std::to_string(count) + "\" failures=\"" + std::to_string(failed) + "\"";

@@ -39,6 +39,30 @@ struct ReportedPart {
   bool fails = false;
 };
 
+/// A stretch of the flight from which a failsafe return is not valid. Times are those in the middle
+/// between the fastest and the slowest flight.
+struct RefusedReturn {
+  double from_s = 0;
+  double to_s = 0;
+  std::size_t first = 0;  ///< commands that are carried out at its beginning and at its end
+  std::size_t last = 0;
+  double worst_s = 0;
+  std::size_t worst = 0;  ///< command
+  Finding finding;        ///< of the return at the worst time
+};
+
+/// The verdict on the failsafe returns of a mission.
+struct ReturnsReport {
+  Verdict verdict = Verdict::pass;
+  std::vector<RefusedReturn> refused;  ///< by autopilot, and in the order of time
+  std::vector<std::string> unjudged;   ///< why there is no verdict
+  std::vector<Parameters::Used> parameters;
+  /// The worst of the refused; none: nothing is refused.
+  const RefusedReturn* worst() const;
+  /// "from every second, of ArduPilot copter", what is refused, or why it is not judged.
+  std::string in_words() const;
+};
+
 /// The verdict on a mission of a ground station.
 struct PlanReport {
   std::string file;
@@ -53,10 +77,14 @@ struct PlanReport {
   std::vector<TimeSpan> times;                 ///< when each point of the drawn route is left first
   double lowest_m = kInfinity;                 ///< above ground, but where it takes off and lands
   Measures measures;
-  std::vector<std::string> notes;  ///< how the file and the world were read
+  std::vector<std::string> notes;          ///< how the file and the world were read
+  std::optional<ReturnsReport> returns{};  ///< where they are judged
 
   Verdict verdict() const;
-  bool passed() const { return findings.empty(); }
+  /// The mission, and its returns where they are judged.
+  bool passed() const {
+    return findings.empty() && (!returns || returns->verdict == Verdict::pass);
+  }
   /// Of a command.
   std::string name_of(std::size_t command) const;
   /// Of a point of the drawn route: "item 3 (waypoint)", "point 3" where the file numbers nothing,
@@ -69,6 +97,10 @@ struct PlanReport {
 /// One of the lines that the flight may follow: in each part the longest, in the middle between its
 /// minimum and maximum heights.
 Polyline flown_line(const FlownMission& flown);
+
+/// "from 3 min 12 s (item 4 (waypoint)) to 3 min 40 s (item 5 (waypoint)), worst at …: a return's
+/// …"
+std::string in_words(const RefusedReturn& refused, const PlanReport& report);
 
 /// "pass", "fail", "not judged"
 const char* word_of(Verdict verdict);

@@ -55,6 +55,43 @@ std::string PlanReport::height_in_words() const {
                                    : "height above ground unknown";
 }
 
+const RefusedReturn* ReturnsReport::worst() const {
+  const auto off = [](const RefusedReturn& refused) {
+    const Violation& violation = refused.finding.violation;
+    return std::abs(violation.value - violation.limit);
+  };
+  const auto found = std::max_element(
+      refused.begin(), refused.end(),
+      [&](const RefusedReturn& a, const RefusedReturn& b) { return off(a) < off(b); });
+  return found == refused.end() ? nullptr : &*found;
+}
+
+std::string ReturnsReport::in_words() const {
+  if (verdict == Verdict::pass) {
+    return "there is a way home from every second of the flight";
+  }
+  std::string words =
+      refused.empty() ? "" : counted(refused.size(), "part") + " of the flight without a way home";
+  for (const std::string& why : unjudged) {
+    words += (words.empty() ? "" : "; not judged: ") + why;
+  }
+  return words;
+}
+
+std::string in_words(const RefusedReturn& refused, const PlanReport& report) {
+  const auto time = [](double seconds) {
+    const long whole = std::lround(seconds);
+    return (whole >= 60 ? std::to_string(whole / 60) + " min " : "") + std::to_string(whole % 60) +
+           " s";
+  };
+  const auto place = [&](double seconds, std::size_t command) {
+    return time(seconds) + " (" + report.name_of(command) + ")";
+  };
+  return "from " + place(refused.from_s, refused.first) + " to " +
+         place(refused.to_s, refused.last) + ", worst at " + time(refused.worst_s) +
+         ": a return's " + refused.finding.violation.message;
+}
+
 void expect_route(const std::string& file, const formats::MissionFile& plan) {
   if (!plan.route_problem.empty() && plan.commands.empty()) {
     throw Error(file + ": " + plan.route_problem);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "host/gate/plan_report.hpp"
+
+namespace altiplan::host {
+
+/// Judges the failsafe returns from every place of the flight's band, by each autopilot that may
+/// fly it, as parts of the mission are judged. A return from the ground, from a take-off or a
+/// landing of an aeroplane, and from the mission's own return is none that a failsafe changes:
+/// these are left out.
+ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& world,
+                            const GateOptions& options);
+}  // namespace altiplan::host

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: Apache-2.0
+"""returns_test.py PROGRAM SOURCES: `altiplan check MISSION --returns`. A referee of its own flies the plainest return,
+straight from a place of the mission to home, over models of ALTIPLAN_TEST_DATA that it reads itself: what it finds in
+the ground must be among the refused."""
+import json
+import math
+import os
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import unittest
+
+from plan_case import PlanCase
+
+SOURCES = sys.argv[2]
+MODELS = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", f"{SOURCES}/../shared/data"), "dem")
+METRES = 111320  # a degree
+COPTER, PLANE, PX4_COPTER, PX4_PLANE = (3, 2), (3, 1), (12, 2), (12, 1)
+
+
+class Model:
+    """Posts by row from the north, and the ground between four of them."""
+
+    def __init__(self, name):
+        self.file = str(MODELS / name)
+        self.crs = []
+        if name.endswith(".hgt"):
+            side = 1201
+            self.posts = struct.unpack(f">{side * side}h", pathlib.Path(self.file).read_bytes())
+            self.columns, self.step = side, 1 / 1200
+            self.west, self.north = -int(name[4:7]), int(name[1:3]) + 1
+        else:
+            words = pathlib.Path(self.file).read_text().split()
+            self.crs = ["--crs", "EPSG:4326"]
+            head = {words[n]: float(words[n + 1]) for n in range(0, 12, 2)}
+            self.posts = [float(word) for word in words[12:]]
+            self.columns, self.step = int(head["ncols"]), head["cellsize"]
+            self.west = head["xllcorner"] + self.step / 2
+            self.north = head["yllcorner"] + (head["nrows"] - 0.5) * self.step
+
+    def ground(self, lat, lon):
+        x, y = (lon - self.west) / self.step, (self.north - lat) / self.step
+        column, row = int(x), int(y)
+        u, v = x - column, y - row
+        at = row * self.columns + column
+        a, b = self.posts[at:at + 2]
+        c, d = self.posts[at + self.columns:at + self.columns + 2]
+        return min((a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v,
+                   *((a + u * (b - a) + v * (d - b), a + u * (d - c) + v * (c - a)) if u else (a + v * (c - a),)))
+
+
+def item(number, command, lat, lon, height, frame=3, params=(0, 0, 0, 0)):
+    return {"type": "SimpleItem", "command": command, "frame": frame, "doJumpId": number, "autoContinue": True,
+            "params": [*params, lat, lon, height]}
+
+
+class Returns(PlanCase):
+    """A ridge 200 m high east of home, and missions beyond it."""
+
+    LAT, LON = 47.0, 8.0
+
+    def setUp(self):
+        super().setUp()
+        rows = []
+        for _ in range(60):
+            rows.append(" ".join("600" if 60 <= column < 64 else "400" for column in range(120)))
+        (self.folder / "ridge.asc").write_text(
+            f"ncols 120\nnrows 60\nxllcorner {self.LON - 0.02}\nyllcorner {self.LAT - 0.015}\ncellsize 0.0005\n"
+            "NODATA_value -9999\n" + "\n".join(rows) + "\n")
+        (self.folder / "ridge.prj").write_text(
+            'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+            'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
+
+    def returns(self, vehicle, way, *options, parameters=None, rally=(), home=None, fence=None, code=None):
+        """`way`: (command, east of home, north, height above home)."""
+        items = [item(n + 1, command, self.LAT + north / METRES,
+                      self.LON + east / METRES / math.cos(math.radians(self.LAT)), height)
+                 for n, (command, east, north, height) in enumerate(way)]
+        self.write(items, firmwareType=vehicle[0], vehicleType=vehicle[1],
+                   plannedHomePosition=home or [self.LAT, self.LON, 400])
+        plan = json.loads((self.folder / "mission.plan").read_text())
+        plan["rallyPoints"]["points"] = [
+            [self.LAT + north / METRES, self.LON + east / METRES / math.cos(math.radians(self.LAT)), height]
+            for east, north, height in rally]
+        (self.folder / "mission.plan").write_text(json.dumps(plan))
+        if parameters:
+            (self.folder / "p.param").write_text("".join(f"{name},{value}\n" for name, value in parameters.items()))
+            options = (*options, "--params", "p.param")
+        out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--json", *options, code=code)
+        return json.loads(out)
+
+    # Over the ridge at 260 m above home, and down to 60 m beyond it.
+    def beyond(self, take_off=True):
+        return ([(22, 0, 0, 260)] if take_off else []) + [(16, 300, 0, 260), (16, 1600, 0, 260), (16, 1900, 0, 60)]
+
+    def test_a_copter_whose_return_is_lower_than_the_ridge(self):
+        told = self.returns(COPTER, self.beyond(), code=1)
+        self.assertEqual(told["verdict"], "pass", told["violations"])
+        returns = told["returns"]
+        self.assertEqual(returns["verdict"], "fail")
+        worst = returns["worst"]
+        self.assertEqual(worst["item"], 4)
+        begins, ends = (sum(told["parts"][n]["time_s"]) / 2 for n in (2, 3))
+        self.assertTrue(begins < worst["time_s"] <= ends, (begins, worst, ends))
+        self.assertIsNone(returns["point_of_no_return_s"])
+        self.assertEqual([one["rule"] for one in returns["refused"]], ["ground"])
+        self.assertAlmostEqual(returns["refused"][0]["value"], 60 - 200, delta=20)
+        self.assertEqual(returns["parameters"]["RTL_ALT_M"], 15)
+
+    def test_a_return_height_that_is_high_enough(self):
+        for parameters in ({"RTL_ALT": 23000}, {"RTL_ALT_M": 230}):
+            told = self.returns(COPTER, self.beyond(), parameters=parameters, code=0)
+            self.assertEqual((told["returns"]["verdict"], told["returns"]["worst"]), ("pass", None))
+
+    def test_a_rally_point_beyond_the_ridge(self):
+        told = self.returns(COPTER, self.beyond(), rally=[(1900, 60, 20)], code=0)
+        self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
+        # One that is farther away than its limit does not help, one nearby in the ridge's shadow harms.
+        told = self.returns(COPTER, self.beyond(), rally=[(1900, 60, 20)], parameters={"RALLY_LIMIT_KM": 0.02}, code=1)
+        self.assertEqual(told["returns"]["verdict"], "fail")
+
+    def test_words(self):
+        self.returns(COPTER, self.beyond(), code=1)
+        out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", code=1)
+        self.assertRegex(out, r"returns fail: 1 part of the flight without a way home\n"
+                              r"  from \d+ min \d+ s \(item 4 \(waypoint\)\) to .*: a return's the way home: flies into "
+                              r"the ground, up to 1\d\d\.\d m below its surface")
+        for file, option in (("c.html", "--certificate"), ("j.xml", "--junit")):
+            self.call("mission.plan", "--terrain", "ridge.asc", "--returns", option, file, code=1)
+            self.assertIn("flies into the ground", (self.folder / file).read_text())
+
+    def test_an_aeroplane_whose_return_flies_into_the_hill(self):
+        way = [(16, 300, 0, 260), (16, 1400, 0, 260), (16, 2000, 0, 260), (20, 0, 0, 0)]
+        told = self.returns(PLANE, way, code=1)
+        self.assertEqual(told["returns"]["verdict"], "fail")
+        self.assertEqual(told["returns"]["refused"][0]["rule"], "ground")
+        told = self.returns(PLANE, way, parameters={"RTL_ALTITUDE": 260}, code=0)
+        self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
+
+    def test_an_aeroplane_with_a_rally_point(self):
+        # Beyond the ridge its own height counts; at 70 m it circles clear of the ridge.
+        way = [(16, 300, 0, 260), (16, 1300, 0, 260), (16, 2000, 0, 260)]
+        told = self.returns(PLANE, way, rally=[(2000, 300, 260)], code=0)  # it ends with a return to the rally point
+        self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
+
+    def test_px4_returns_in_a_cone(self):
+        way = [(22, 0, 0, 60), (16, 60, 0, 60), (16, 60, 60, 5), (16, 20, 0, 5)]
+        told = self.returns(PX4_COPTER, way, code=0)
+        self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
+        for name in ("RTL_CONE_ANG", "RTL_MIN_DIST", "RTL_RETURN_ALT"):
+            self.assertIn(name, told["returns"]["parameters"])
+        # It climbs 30 m; a ceiling of 20 m is kept where the cone is as wide as the flight.
+        low = [(22, 0, 0, 12), (16, 30, 0, 12), (16, 60, 0, 12)]
+        ceiling = "--max-agl", "20"
+        self.assertEqual(self.returns(PX4_COPTER, low, *ceiling, code=1)["returns"]["verdict"], "fail")
+        wide = {"RTL_CONE_ANG": 80, "RTL_MIN_DIST": 100, "NAV_ACC_RAD": 2}
+        self.assertEqual(self.returns(PX4_COPTER, low, *ceiling, parameters=wide, code=0)["returns"]["verdict"], "pass")
+
+    def test_a_return_across_a_zone(self):
+        way = [(22, 0, 0, 50), (16, 0, 500, 50), (16, 500, 500, 50)]
+        lon = self.LON + 250 / METRES / math.cos(math.radians(self.LAT))
+        self.zones("z.json", self.around(lon, self.LAT + 250 / METRES, 0.0008), 900)
+        told = self.returns(COPTER, way, "--airspace", "z.json", code=1)
+        self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", "fail"), told)
+        self.assertEqual([one["zone"] for one in told["returns"]["refused"]], ["Z"])
+        self.assertEqual(told["returns"]["worst"]["item"], 3)
+
+    def test_a_fence_that_the_return_climbs_out_of(self):
+        way = [(22, 0, 0, 20), (16, 0, 200, 20)]
+        fence = {"FENCE_ENABLE": 1, "FENCE_TYPE": 2, "FENCE_RADIUS": 190}
+        told = self.returns(COPTER, way, parameters=fence, code=1)
+        self.assertEqual(told["returns"]["verdict"], "fail")
+        told = self.returns(COPTER, way, parameters={**fence, "FENCE_RADIUS": 300}, code=0)
+        self.assertEqual(told["returns"]["verdict"], "pass")
+
+    def test_what_is_not_modelled_is_not_judged(self):
+        for vehicle, way, parameters, words in [
+                (COPTER, self.beyond(), {"RTL_ALT_TYPE": 1}, "RTL_ALT_TYPE"),
+                (PX4_COPTER, self.beyond(), {"RTL_TYPE": 2, "RTL_RETURN_ALT": 250}, "RTL_TYPE"),
+                (PX4_PLANE, [(22, 300, 0, 260)] + self.beyond(False) + [(21, 1900, 1200, 0)], {}, "landing"),
+                (PLANE, self.beyond(False) + [(189, 0, 0, 0), (21, 1900, 300, 0)], {"RTL_AUTOLAND": 2}, "landing"),
+                ((3, 20), [(84, 0, 0, 260)] + self.beyond(False) + [(85, 2900, 0, 0)], {}, "VTOL")]:
+            told = self.returns(vehicle, way, parameters=parameters, code=1)
+            self.assertEqual(told["returns"]["verdict"], "not_judged", (words, told["returns"]))
+            self.assertIn(words, str(told["returns"]["not_judged"]), told["violations"])
+
+    def test_a_mission_that_is_refused_has_no_returns(self):
+        told = self.returns(PX4_COPTER, [(22, 0, 0, 50), (82, 300, 0, 50)], code=1)
+        self.assertEqual(told["returns"]["verdict"], "not_judged")
+
+    def test_the_option_needs_a_mission(self):
+        _, err = self.call("--returns", "mission.plan", code=2)
+        self.assertIn("is a mission: add --terrain", err)
+
+
+class Referee(PlanCase):
+    """Random missions over real models."""
+
+    # The middle of what is flown over, and how far (degrees) it reaches.
+    PLACES = [("N44W072.hgt", 44.26, -71.33, 0.05), ("srtmgl3_boulder_co.asc", 40.15, -105.5, 0.045)]
+    KINDS = [(COPTER, {"RTL_ALT_M": 60}), (COPTER, {"RTL_ALT_M": 300}), (PLANE, {"RTL_ALTITUDE": 150}),
+             (PLANE, {"RTL_ALTITUDE": 500}), (PX4_COPTER, {"RTL_RETURN_ALT": 90}),
+             (PX4_PLANE, {"RTL_TYPE": 0, "RTL_RETURN_ALT": 200})]
+
+    @unittest.skipUnless(MODELS.is_dir(), "no test data: set ALTIPLAN_TEST_DATA")
+    def test_no_return_is_passed_that_hits_the_ground(self):
+        counts = {"hits": 0, "seconds": 0, "refused": 0}
+        for name, *place in self.PLACES:
+            model = Model(name)
+            for kind, (vehicle, parameters) in enumerate(3 * self.KINDS):
+                self.judge(model, place, vehicle, parameters, random.Random(f"{name} {kind}"), counts)
+        self.assertGreater(counts["hits"], 300, counts)  # else it tells nothing
+        self.assertGreater(counts["seconds"] - counts["refused"], 300, counts)
+
+    def judge(self, model, place, vehicle, parameters, chance, counts):
+        lat, lon, far = place
+
+        def somewhere():
+            return lat + chance.uniform(-far, far), lon + chance.uniform(-far, far)
+
+        home = min((somewhere() for _ in range(4)), key=lambda at: model.ground(*at))  # in a valley
+        home = [*home, model.ground(*home)]
+        east = METRES * math.cos(math.radians(lat))
+        way = []
+        for _ in range(5):
+            at = somewhere()
+            way.append((*at, model.ground(*at) + chance.uniform(60, 250)))
+        items = [item(n + 2, 16, *point, frame=0) for n, point in enumerate(way)]
+        if vehicle[1] == 2:
+            items.insert(0, item(1, 22, home[0], home[1], 120))
+        elif vehicle[0] == 12:
+            items.insert(0, item(1, 22, home[0] + 0.005, home[1], 120))
+            lat, lon, z = way[-1]
+            items.append(item(9, 21, lat + (z - model.ground(lat, lon)) / math.tan(math.radians(4)) / METRES, lon, 0))
+        self.write(items, firmwareType=vehicle[0], vehicleType=vehicle[1], plannedHomePosition=home)
+        (self.folder / "p.param").write_text("".join(f"{name},{value}\n" for name, value in parameters.items()))
+        arguments = ["mission.plan", "--terrain", model.file, *model.crs, "--params", "p.param", "--returns", "--json"]
+        told = self.told(arguments)
+        above = list(parameters.values())[-1]
+        parts = [part for part in told["parts"] if part["what"] == "" and len(part["items"]) == 2]
+        middle = [sum(part["time_s"]) / 2 if None not in part["time_s"] else 1e9 for part in told["parts"]]
+        for part in parts:
+            index = told["parts"].index(part)
+            begin, end = middle[index - 1] if index else 0, middle[index]
+            numbers = [int(words.split()[1]) for words in part["items"]]
+            if min(numbers) < 2 or max(numbers) > len(way) + 1:
+                continue
+            a, b = (way[number - 2] for number in numbers)
+            for n in range(1, 20):
+                share = 0.1 + 0.8 * n / 20  # away from cut corners
+                at = [p + share * (q - p) for p, q in zip(a, b)]
+                if vehicle == PX4_PLANE:  # its ramp ends before the item
+                    at[2] = max(at[2], b[2]) if b[2] < a[2] else at[2]
+                second = begin + share * (end - begin)
+                is_refused = any(one["from_s"] - 5 <= second <= one["to_s"] + 5 for one in told["returns"]["refused"])
+                hits = self.hits(model, at, home, vehicle, home[2] + above, east)
+                counts["seconds"] += 1
+                counts["refused"] += is_refused
+                counts["hits"] += hits
+                self.assertTrue(is_refused or not hits, (model.file, vehicle, parameters, second, at, told["returns"]))
+
+    def told(self, arguments):
+        run = subprocess.run([sys.argv[1], "check", *arguments], cwd=self.folder, capture_output=True, text=True,
+                             timeout=60)
+        self.assertIn(run.returncode, (0, 1), run.stderr)
+        return json.loads(run.stdout)
+
+    def hits(self, model, at, home, vehicle, target, east):
+        north, west = (home[0] - at[0]) * METRES, (home[1] - at[1]) * east
+        length = math.hypot(north, west)
+        for n in range(1, int(length / 10)):
+            along = 10 * n
+            if vehicle == PLANE:  # it climbs by up to 5 m/s at 12 m/s, or sinks on a line
+                z = min(target, at[2] + along * 5.75 / 10) if at[2] < target else at[2] + along / length * (target - at[2])
+            else:
+                z = max(at[2], target)
+                if vehicle == COPTER and at[2] < target:
+                    z = max(at[2], min(target, home[2] + 3 * length))
+            share = along / length
+            if z < model.ground(at[0] + share * (home[0] - at[0]), at[1] + share * (home[1] - at[1])) - 2:
+                return True
+        return False
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
