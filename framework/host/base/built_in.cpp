@@ -45,8 +45,8 @@ const std::vector<PluginEntry>& built_in_plugins() {
 }
 
 void ObjectiveTerm::describe(Fields& f) {
-  f.plugin("objective", plugin, parameters).doc("an objective").required();
   f("weight", weight).greater_than(0).at_most(1e12).doc("factor of its costs");
+  f.plugin("objective", plugin, parameters).doc("an objective").required();
 }
 
 void WeightedParams::describe(Fields& f) {
