@@ -228,6 +228,17 @@ TunePlan plan_tuning(const TuneRequest& request) {
       plan.config = std::move(config);
     }
   }
+  std::vector<std::string> metrics;
+  for (const auto* given : {&plan.config.scenario.metrics, &plan.config.pipeline.metrics}) {
+    for (const host::MetricEntry& metric : *given) {
+      metrics.push_back(metric.id);
+    }
+  }
+  for (const study::ClaimValue& value : plan.objective.values) {
+    if (const std::string why = study::why_no_value(value.name, metrics); !why.empty()) {
+      throw ConfigError(Location{"", 0, 0, "--metric " + request.metric}, "", why);
+    }
+  }
   if (plan.scenarios[0].name.empty()) {
     const fs::path& own = plan.config.scenario_path;
     plan.scenarios[0].name = own.stem().string();

@@ -233,14 +233,13 @@ std::vector<std::pair<std::string, std::string>> paths_of(const host::Config& co
         plugin(*config.registry, "constraint", entry.plugin).describe(&entry.parameters, path),
         entry.parameters, path);
   }
-  if (const auto& objective = config.pipeline.objective) {
-    host::for_each_objective(
-        objective->plugin, objective->parameters, "objective",
-        [&](const std::string& name, const Value& parameters, const std::string& key) {
+  host::for_each_objective(
+      config, [&](const std::string& name, const Value& parameters, const std::string& key) {
+        if (!key.starts_with("scenario.")) {
           add_fields(plugin(*config.registry, "objective", name).describe(&parameters, key),
                      parameters, key);
-        });
-  }
+        }
+      });
   return paths;
 }
 

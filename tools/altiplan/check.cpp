@@ -4,6 +4,7 @@
 
 #include "altiplan/formats/mission_file.hpp"
 #include "commands.hpp"
+#include "flight_text.hpp"
 #include "host/base/words.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
@@ -67,7 +68,8 @@ int report(const host::Mission& mission, const Route& route,
   const Measures measures = measure(route, mission.request);
   bool valid = verdict.ok();
   const host::Cost cost = host::price(route, mission.request, mission.via);
-  host::Json json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures)}};
+  const host::MetricValues metrics = host::measured(route, mission.request, mission.metrics);
+  host::Json json{{"check", host::to_json(verdict)}, {"metrics", host::to_json(measures, metrics)}};
   json.update(host::to_json(std::optional(cost)));
   if (!as_json) {
     print_route(verdict, measures);
@@ -76,6 +78,7 @@ int report(const host::Mission& mission, const Route& route,
                   mission.request.objective->unit().c_str(),
                   host::with_digits(cost.bound, 6).c_str(), fixed(100 * cost.gap(), 2).c_str());
     }
+    print_metrics(stdout, "route", metrics);
   }
   if (track) {
     host::FlightSetup setup;

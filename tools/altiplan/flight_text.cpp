@@ -2,8 +2,16 @@
 #include "flight_text.hpp"
 
 #include "commands.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::cli {
+
+void print_metrics(std::FILE* to, const char* of, const host::MetricValues& metrics) {
+  for (const auto& [name, value] : metrics) {
+    std::fprintf(to, "  %s of the %s: %s\n", name.c_str(), of,
+                 host::with_digits(value, 6).c_str());
+  }
+}
 
 void print_flight(std::FILE* to, const host::FlightResult& flight, bool is_cut_short) {
   const std::optional<double>& separation = flight.min_separation_m;

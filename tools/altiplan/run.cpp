@@ -110,7 +110,11 @@ void print_table(std::FILE* to, const host::RunResult& result) {
             flown ? result.flight->measures : step.measures, step.time_s, costs_of(result, step));
   }
   table.print(to);
+  if (result.accepted) {
+    print_metrics(to, "route", result.steps[*result.accepted].metrics);
+  }
   if (result.flight) {
+    print_metrics(to, "flight", result.flight->metrics);
     print_flight(to, *result.flight, result.steps.back().budget_hit);
   }
   for (const host::StepResult& step : result.steps) {

@@ -118,6 +118,21 @@ const ObjectiveEntry* Config::objective() const {
   return given && given->plugin != "length" ? &*given : nullptr;
 }
 
+void for_each_objective(const Config& config, const VisitObjective& visit) {
+  const auto of_file = [&](const auto& file, const std::string& prefix) {
+    if (file.objective) {
+      for_each_objective(file.objective->plugin, file.objective->parameters, prefix + "objective",
+                         visit);
+    }
+    for (std::size_t i = 0; i < file.metrics.size(); ++i) {
+      for_each_objective(file.metrics[i].plugin, file.metrics[i].parameters,
+                         prefix + item("metrics", i), visit);
+    }
+  };
+  of_file(config.scenario, "scenario.");
+  of_file(config.pipeline, "");
+}
+
 const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string_view name) {
   for (const PluginEntry& entry : built_in_plugins()) {
     if (kind == entry.kind && name == entry.name) {
@@ -152,6 +167,8 @@ Config scenario_config(const fs::path& path, const std::optional<std::string>& t
   config.registry = make_registry(config);
   if (read) {
     check_scenario(checker, config.scenario, config.scenario_tree);
+    Ids metrics;
+    check_metrics(checker, config.scenario.metrics, config.scenario_tree, metrics);
   }
   checker.finish();
   return config;
@@ -169,9 +186,12 @@ Config pipeline_config(Config config, const std::shared_ptr<Registry>& shared) {
   config.seed = config.overrides.seed.value_or(config.pipeline.seed);
   const bool read = find_scenario(config, checker) && read_scenario(config, checker);
   config.registry = make_registry(config, shared);
+  Ids metrics;
   if (read) {
     check_scenario(checker, config.scenario, config.scenario_tree);
+    check_metrics(checker, config.scenario.metrics, config.scenario_tree, metrics);
   }
+  check_metrics(checker, config.pipeline.metrics, config.pipeline_tree, metrics);
   check_constraints(checker, config.pipeline.constraints, config.pipeline_tree);
   if (config.pipeline.objective) {
     check_objective(checker, *config.pipeline.objective, *config.pipeline_tree.find("objective"),

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/built_in.hpp"
 #include "host/config/pipeline_file.hpp"
 #include "host/plugins/registry.hpp"
 
@@ -64,6 +65,10 @@ FileKind kind_of(const Value& tree);
 
 /// The plugin of that kind and name: built in, or from a library. Throws as Registry::get.
 const PluginEntry& plugin(Registry& registry, std::string_view kind, std::string_view name);
+
+/// Calls `visit` for every objective that the two files name, with the parts of sums; keys of the
+/// scenario begin with "scenario.".
+void for_each_objective(const Config& config, const VisitObjective& visit);
 
 /// One resolved parameter of the configuration, for `explain`.
 struct Explained {

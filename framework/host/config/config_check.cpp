@@ -8,6 +8,7 @@
 #include "host/base/built_in.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
+#include "host/base/words.hpp"
 #include "host/config/yaml.hpp"
 
 namespace altiplan::host {
@@ -115,6 +116,55 @@ void check_objective(Checker& checker, const ObjectiveEntry& entry, const Value&
       check_objective(checker, {term.plugin, term.parameters},
                       entry.parameters.find("of")->items[i], item(inner + ".of", i));
     }
+  }
+}
+
+namespace {
+/// Values that every run, step or flight has already (docs/reference/studies.md).
+constexpr const char* kValuesOfRuns[] = {
+    "length_m",          "waypoints",          "max_turn_deg",       "max_climb_deg",
+    "min_radius_m",      "min_clearance_m",    "smoothness_rad",     "min_ground_clearance_m",
+    "duration_s",        "plan_time_s",        "smooth_time_s",      "expanded",
+    "setup_time_s",      "solved",             "wall_time_s",        "cpu_time_s",
+    "peak_memory_mb",    "time_s",             "accepted",           "stands",
+    "budget_hit",        "collisions",         "min_separation_m",   "reached",
+    "cross_track_max_m", "cross_track_p999_m", "height_error_max_m", "replans",
+    "replan_time_s",     "handovers"};
+
+/// Why a metric cannot have this name; "" if it can.
+std::string name_problem(const std::string& name, const Ids& names) {
+  if (!is_snake_case(name)) {
+    return "expected lower-case letters, digits and '_', starting with a letter, found " +
+           excerpt(name);
+  }
+  const bool is_built_in = std::find(std::begin(kValuesOfRuns), std::end(kValuesOfRuns), name) !=
+                           std::end(kValuesOfRuns);
+  if (is_built_in) {
+    return "every result has a value '" + name + "' already: give this metric another id";
+  }
+  return names.contains(name) ? "there is a metric '" + name + "' already: give this one an id"
+                              : "";
+}
+}  // namespace
+
+void check_metrics(Checker& checker, std::vector<MetricEntry>& entries, const Value& tree,
+                   Ids& names) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    MetricEntry& entry = entries[i];
+    const Value& at = tree.find("metrics")->items[i];
+    const std::string path = item("metrics", i);
+    check_objective(checker, {entry.plugin, entry.parameters}, at, path);
+    const bool is_named = !entry.id.empty();
+    if (!is_named) {
+      entry.id = entry.plugin;
+    }
+    if (entry.id.empty()) {
+      continue;  // already reported
+    }
+    if (const std::string why = name_problem(entry.id, names); !why.empty()) {
+      checker.problem(place_of(at, is_named ? "id" : entry.plugin), path, why);
+    }
+    names.insert(entry.id);
   }
 }
 

@@ -66,6 +66,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// Checks an objective and those that it adds up; `path` is that of its map.
 void check_objective(Checker& checker, const ObjectiveEntry& entry, const Value& tree,
                      const std::string& path);
+/// Checks the metrics of a file, and names those without an id; `names` are those of both files.
+void check_metrics(Checker& checker, std::vector<MetricEntry>& entries, const Value& tree,
+                   Ids& names);
 void check_constraints(Checker& checker, const std::vector<ConstraintEntry>& entries,
                        const Value& tree);
 /// Checks layers, moving obstacles, points and events; assigns missing ids.

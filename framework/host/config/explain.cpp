@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "host/base/built_in.hpp"
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 
@@ -121,16 +120,10 @@ std::vector<Explained> explain(const Config& config) {
                  item(path, i) + "." + entry.plugin);
     }
   }
-  for (const auto& [objective, path] : {std::pair(&config.scenario.objective, "scenario.objective"),
-                                        std::pair(&config.pipeline.objective, "objective")}) {
-    if (*objective) {
-      for_each_objective(
-          (*objective)->plugin, (*objective)->parameters, path,
-          [&](const std::string& name, const Value& parameters, const std::string& key) {
-            add_plugin(all, config, "objective", name, parameters, key);
-          });
-    }
-  }
+  for_each_objective(
+      config, [&](const std::string& name, const Value& parameters, const std::string& key) {
+        add_plugin(all, config, "objective", name, parameters, key);
+      });
   add_file<PipelineFile>(all, config.pipeline_tree, "");
   for (std::size_t i = 0; i < config.steps.size(); ++i) {
     const StepEntry& step = config.steps[i];

@@ -66,6 +66,7 @@ struct PipelineFile {
   std::vector<Path> plugins;
   std::vector<ConstraintEntry> constraints;
   std::optional<ObjectiveEntry> objective;
+  std::vector<MetricEntry> metrics;
   std::vector<Value> steps;  ///< step maps, bound by the configuration
   void describe(Fields& f);
 };

@@ -19,6 +19,11 @@ void ObjectiveEntry::describe(Fields& f) {
   f.plugin("objective", plugin, parameters).doc("what routes have least of").required();
 }
 
+void MetricEntry::describe(Fields& f) {
+  f("id", id).doc("name of the value in results; default: the objective's");
+  f.plugin("objective", plugin, parameters).doc("an objective that routes are measured by").required();
+}
+
 void PointEntry::describe(Fields& f) { f.point(point).required(); }
 
 namespace {
@@ -325,5 +330,6 @@ void ScenarioFile::describe(Fields& f) {
   f("constraints", constraints).doc("constraints that apply to every pipeline");
   f("objective", objective)
       .doc("what routes have least of, unless the pipeline says so; default: length");
+  f("metrics", metrics).doc("objectives that routes are measured by");
 }
 }  // namespace altiplan::host

@@ -33,6 +33,14 @@ struct ObjectiveEntry {
   void describe(Fields& f);
 };
 
+/// `- exposure: {…}` under `metrics`: an objective by which every route is measured.
+struct MetricEntry {
+  std::string plugin;
+  Value parameters;
+  std::string id;  ///< name of the value in results
+  void describe(Fields& f);
+};
+
 struct PointEntry {
   Point point;
   void describe(Fields& f);
@@ -229,6 +237,7 @@ struct ScenarioFile {
   std::vector<EventEntry> events;
   std::vector<ConstraintEntry> constraints;
   std::optional<ObjectiveEntry> objective;
+  std::vector<MetricEntry> metrics;
   void describe(Fields& f);
 };
 

@@ -15,6 +15,7 @@
 #include "altiplan/smoother.hpp"
 #include "host/base/run_status.hpp"
 #include "host/flight/flown_vehicle.hpp"
+#include "host/mission/objective.hpp"
 
 namespace altiplan::host {
 
@@ -111,6 +112,7 @@ struct FlightResult {
   std::optional<double> height_error_max_m;
   Counters counters;                ///< the pilot's, and "steps" of the simulation
   Measures measures;                ///< of the track, in the world at the end of the flight
+  MetricValues metrics;             ///< of the track, in the true world at its start
   CheckResult check;                ///< each leg against the true world at the time it was flown
   std::optional<std::string> link;  ///< address of the vehicle; none: simulated
 };

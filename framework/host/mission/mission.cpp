@@ -13,7 +13,6 @@
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/mission/coverage.hpp"
-#include "host/mission/objective.hpp"
 #include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
 #include "host/mission/volume.hpp"
@@ -385,6 +384,7 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
     calling("the objective '" + config.objective()->plugin + "': its constructor");
     request.objective = objective_of(config, site);
   }
+  mission.metrics = metrics_of(config, site, calling);
   const std::vector<NamedConstraint> constraints = constraints_of(config, scale_error, calling);
   mission.track_request = request;
   apply_constraints(request, constraints, AppliesTo::route);

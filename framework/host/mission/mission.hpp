@@ -7,6 +7,7 @@
 
 #include "altiplan/request.hpp"
 #include "host/config/config.hpp"
+#include "host/mission/objective.hpp"
 
 namespace altiplan::host {
 
@@ -20,6 +21,7 @@ struct Mission {
   /// The same with those that apply to tracks.
   Request track_request;
   std::vector<Goal> via;
+  std::vector<Metric> metrics;  ///< by which routes and tracks are measured
   VehicleType vehicle_type = VehicleType::copter;
   std::vector<std::string> notes;     ///< notes of the layers
   std::vector<std::string> warnings;  ///< for the user to check

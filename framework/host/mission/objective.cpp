@@ -102,4 +102,47 @@ std::shared_ptr<const Objective> objective_of(const Config& config, const Site& 
   const std::string key = config.pipeline.objective ? "objective." : "scenario.objective.";
   return make_objective(config, entry->plugin, entry->parameters, own, key + entry->plugin);
 }
+
+std::vector<Metric> metrics_of(const Config& config, const Site& site,
+                               const std::function<void(const std::string&)>& calling) {
+  std::vector<Metric> metrics;
+  Site own = site;
+  const auto add = [&](const std::vector<MetricEntry>& entries, const std::string& list) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      calling("the metric '" + entries[i].id + "': its constructor");
+      own.random = site.random.sub("metric:" + entries[i].id);
+      metrics.push_back({entries[i].id,
+                         make_objective(config, entries[i].plugin, entries[i].parameters, own,
+                                        item(list, i) + "." + entries[i].plugin)});
+    }
+  };
+  add(config.scenario.metrics, "scenario.metrics");
+  add(config.pipeline.metrics, "metrics");
+  return metrics;
+}
+
+MetricValues measured(const Route& route, const Request& request,
+                      const std::vector<Metric>& metrics) {
+  MetricValues values;
+  Request by = request;
+  for (const Metric& metric : metrics) {
+    by.objective = metric.of;
+    values.emplace_back(metric.name, cost_of(route, by));
+  }
+  return values;
+}
+
+MetricValues measured(const std::vector<std::pair<double, Vec3>>& track, const Request& request,
+                      const std::vector<Metric>& metrics) {
+  MetricValues values;
+  for (const Metric& metric : metrics) {
+    double cost = 0;
+    for (std::size_t i = 1; i < track.size(); ++i) {
+      cost += metric.of->cost(Leg::straight(track[i - 1].second, track[i].second),
+                              track[i - 1].first - track.front().first, request);
+    }
+    values.emplace_back(metric.name, cost);
+  }
+  return values;
+}
 }  // namespace altiplan::host

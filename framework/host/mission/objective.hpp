@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "altiplan/objective.hpp"
 #include "host/config/config.hpp"
@@ -10,4 +14,24 @@ namespace altiplan::host {
 
 /// The objective in force, in the world of `site`; null: length. Throws as build_layer does.
 std::shared_ptr<const Objective> objective_of(const Config& config, const Site& site);
+
+/// An objective that routes are measured by, under its name in results.
+struct Metric {
+  std::string name;
+  std::shared_ptr<const Objective> of;
+};
+
+/// Costs by such objectives, by name.
+using MetricValues = std::vector<std::pair<std::string, double>>;
+
+/// Those of the scenario, then those of the pipeline; `calling` as of build_mission. Throws as build_layer does.
+std::vector<Metric> metrics_of(const Config& config, const Site& site,
+                               const std::function<void(const std::string&)>& calling);
+
+/// Costs of a route by each.
+MetricValues measured(const Route& route, const Request& request,
+                      const std::vector<Metric>& metrics);
+/// Costs of a track of times (s) and places, whose first is the start.
+MetricValues measured(const std::vector<std::pair<double, Vec3>>& track, const Request& request,
+                      const std::vector<Metric>& metrics);
 }  // namespace altiplan::host

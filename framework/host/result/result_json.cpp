@@ -8,7 +8,6 @@
 #include <cmath>
 #include <set>
 
-#include "host/base/built_in.hpp"
 #include "host/base/sha256.hpp"
 
 namespace altiplan::host {
@@ -40,11 +39,17 @@ std::int64_t expanded(const StepResult& step) {
 }
 
 /// Metrics of the whole run: of the accepted route, and of the planning that led to it.
-Json run_metrics(const RunResult& result) {
+Json run_metrics(const Config& config, const RunResult& result) {
   Json json = to_json(Measures{});
   if (result.accepted) {
-    json = to_json(*result.steps[*result.accepted].measures);
+    const StepResult& step = result.steps[*result.accepted];
+    json = to_json(*step.measures, step.metrics);
   } else {
+    for (const auto* entries : {&config.scenario.metrics, &config.pipeline.metrics}) {
+      for (const MetricEntry& entry : *entries) {
+        json[entry.id] = nullptr;
+      }
+    }
     for (auto& [key, value] : json.items()) {
       value = nullptr;
     }
@@ -72,7 +77,7 @@ Json flight_json(const FlightResult& flight) {
   json["reason"] = reason_json(flight.reason);
   json["message"] = flight.message;
   json["link"] = flight.link ? Json(*flight.link) : Json(nullptr);
-  json["metrics"] = to_json(flight.measures);
+  json["metrics"] = to_json(flight.measures, flight.metrics);
   json["check"] = to_json(flight.check);
   json["counters"] = counters_json(flight.counters);
   json["collisions"] = flight.collisions;
@@ -173,11 +178,9 @@ Json plugins_json(const Config& config) {
       use("constraint", entry.plugin);
     }
   }
-  if (const ObjectiveEntry* objective = config.objective()) {
-    for_each_objective(
-        objective->plugin, objective->parameters, "",
-        [&](const std::string& name, const Value&, const std::string&) { use("objective", name); });
-  }
+  for_each_objective(config, [&](const std::string& name, const Value&, const std::string&) {
+    use("objective", name);
+  });
   const auto use_step = [&](const StepEntry& step) {
     for (const char* kind : {"planner", "local_planner", "smoother"}) {
       use(kind, step.plugin);
@@ -238,6 +241,14 @@ Json to_json(const Measures& m) {
           {"duration_s", number(m.duration_s)}};
 }
 
+Json to_json(const Measures& measures, const MetricValues& own) {
+  Json json = to_json(measures);
+  for (const auto& [name, value] : own) {
+    json[name] = number(value);
+  }
+  return json;
+}
+
 Json to_json(const std::optional<Cost>& cost) {
   return {{"cost", cost ? number(cost->cost) : Json(nullptr)},
           {"bound", cost ? number(cost->bound) : Json(nullptr)}};
@@ -260,7 +271,7 @@ Json to_json(const StepResult& step) {
   json["counters"] = counters_json(step.counters);
   json["route"] = to_json(step.route);
   json["legs"] = legs_json(step.route);
-  json["metrics"] = step.measures ? to_json(*step.measures) : Json(nullptr);
+  json["metrics"] = step.measures ? to_json(*step.measures, step.metrics) : Json(nullptr);
   json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
   json.update(to_json(step.cost));
   return json;
@@ -295,7 +306,7 @@ Json result_json(const Config& config, const RunResult& result) {
   json["route"] = accepted ? to_json(accepted->route) : Json(nullptr);
   json["legs"] = accepted ? legs_json(accepted->route) : Json(nullptr);
   json["route_lonlat"] = accepted ? lonlat_json(accepted->route, result.frame) : Json(nullptr);
-  json["metrics"] = run_metrics(result);
+  json["metrics"] = run_metrics(config, result);
   json["check"] = accepted ? to_json(*accepted->check) : Json(nullptr);
   json.update(to_json(accepted ? accepted->cost : std::nullopt));
   json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);

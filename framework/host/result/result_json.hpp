@@ -24,6 +24,8 @@ Json plugins_json(const Config& config);
 Json to_json(const Route& route);
 Json to_json(const CheckResult& check);
 Json to_json(const Measures& measures);
+/// The same with metrics of one's own.
+Json to_json(const Measures& measures, const MetricValues& own);
 /// {"cost": …, "bound": …}
 Json to_json(const std::optional<Cost>& cost);
 /// One of `steps`.

@@ -98,6 +98,7 @@ void Run::fly_once(const StepEntry& entry, std::optional<std::string> instead_of
   FlightResult flight;
   try {
     flight = fly(setup);
+    flight.metrics = measured(flight.track, mission_.track_request, mission_.metrics);
   } catch (const ParameterError& error) {
     throw at_its_key(entry, error);
   }

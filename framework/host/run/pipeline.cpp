@@ -92,6 +92,7 @@ void Run::take_route(const Route& route) {
   given.status = RunStatus::solved;
   given.route = route;
   given.measures = measure(route, mission_.request);
+  given.metrics = measured(route, mission_.request, mission_.metrics);
   given.check = judge(route, mission_.request, mission_.via);
   given.cost = price(route, mission_.request, mission_.via);
   result_.steps.push_back(std::move(given));

@@ -29,6 +29,7 @@ struct StepResult {
   bool proved = false;
   Route route;
   std::optional<Measures> measures;
+  MetricValues metrics;  ///< of a route that is measured
   std::optional<CheckResult> check;
   std::optional<Cost> cost;  ///< of a route that is judged
 };

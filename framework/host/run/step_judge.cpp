@@ -24,6 +24,7 @@ void Run::judge_step(StepResult& step, const Request& request) {
       step.check = judge(step.route, request, mission_.via);
     }
     step.measures = measure(step.route, request);
+    step.metrics = measured(step.route, request, mission_.metrics);
     step.cost = price(step.route, request, mission_.via);
     if (step.check) {
       take_verdict(step);

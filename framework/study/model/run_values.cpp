@@ -82,7 +82,7 @@ RunValues values_of(const host::Json& result) {
   return values.sorted();
 }
 
-std::string why_no_value(const std::string& name) {
+std::string why_no_value(const std::string& name, const std::vector<std::string>& metrics) {
   static const std::vector<std::string> kOfRoute = keys_of(host::to_json(Measures{}));
   static const std::vector<std::string> kOfRun =
       joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
@@ -105,7 +105,8 @@ std::string why_no_value(const std::string& name) {
            "': expected a value of the run, or flight.…, flight.counters.…, "
            "flight.replan_counters.…, steps.ID.…, steps.ID.counters.…";
   }
-  const std::vector<std::string>& known = is_of_flight ? kOfFlight : is_of_step ? kOfStep : kOfRun;
+  std::vector<std::string> known = is_of_flight ? kOfFlight : is_of_step ? kOfStep : kOfRun;
+  known.insert(known.end(), metrics.begin(), metrics.end());
   if (std::find(known.begin(), known.end(), end) != known.end()) {
     return "";
   }
@@ -117,5 +118,9 @@ std::string why_no_value(const std::string& name) {
          (nearest.empty()
               ? ""
               : "; did you mean '" + (before.empty() ? "" : before + ".") + nearest + "'?");
+}
+
+bool is_own_metric(const std::string& name) {
+  return name.find('.') == std::string::npos && !why_no_value(name).empty();
 }
 }  // namespace altiplan::study

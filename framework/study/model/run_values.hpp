@@ -18,6 +18,8 @@ using RunValues = std::vector<std::pair<std::string, double>>;
 RunValues values_of(const host::Json& result);
 
 /// The error message for a name that no run can have a value of, with the nearest valid name; ""
-/// if a run may have it.
-std::string why_no_value(const std::string& name);
+/// if a run may have it. `metrics`: names of objectives that routes are measured by.
+std::string why_no_value(const std::string& name, const std::vector<std::string>& metrics = {});
+/// True if it is none that runs have without such metrics.
+bool is_own_metric(const std::string& name);
 }  // namespace altiplan::study

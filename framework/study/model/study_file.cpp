@@ -37,10 +37,17 @@ void StudyBudget::describe(Fields& f) {
 }
 
 void MetricChoice::describe(Fields& f) {
-  f("name", name).required().doc("value of a run: length_m, flight.length_m …");
+  std::string id;
+  f("name", name).doc("value of a run: length_m, flight.length_m …; or an objective");
   f("better", better)
       .one_of({"lower", "higher"})
       .doc("which values are better (default: by the metric's name, usually lower)");
+  if (name.empty() || !f.reading()) {
+    f("id", id).doc("name of the objective's value; default: the objective's");
+    f.plugin("objective", plugin, parameters)
+        .doc("an objective that the routes of all pipelines are measured by");
+    name = id.empty() ? plugin : id;
+  }
 }
 
 void ClaimEntry::describe(Fields& f) {

@@ -39,10 +39,12 @@ struct StudyBudget {
 
 enum class Better { lower, higher };
 
-/// A quantity that the report compares.
+/// A quantity that the report compares: a value of runs, or an objective of the study's own.
 struct MetricChoice {
   std::string name;  ///< "length_m", "flight.length_m", "steps.route.counters.expanded"
-  std::optional<std::string> better;
+  std::optional<std::string> better = std::nullopt;
+  std::string plugin = "";  ///< an objective, whose value has this name or the given id; else ""
+  Value parameters{};
   void describe(Fields& f);
 };
 

@@ -85,7 +85,7 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
                      const std::vector<fs::path>& plugin_path) {
   StudyProblems problems;
   StudyVariants variants(problems);
-  StudyPlan plan = read_study(study, problems, variants);
+  StudyPlan plan = read_study(study, problems, variants, plugin_path);
   plan.planned = plan.scenarios.size() * plan.pipelines.size() * std::size_t(plan.file.repetitions);
   plan.runs = selected_runs(plan, selection);
   std::map<std::pair<std::size_t, std::size_t>, std::string> pairs;

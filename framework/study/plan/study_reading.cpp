@@ -18,6 +18,18 @@ namespace altiplan::study {
 namespace fs = std::filesystem;
 namespace {
 
+/// The file of a variant as the study sets it; empty if it cannot be read, which is reported when
+/// it is run.
+Value tree_of(const Variant& variant, host::FileOfKey file) {
+  try {
+    Value tree = host::load_yaml(variant.file);
+    host::apply_overrides(tree, variant.set, file);
+    return tree;
+  } catch (const ConfigError&) {
+    return {};
+  }
+}
+
 /// The budget as assignments to every plan step, so that `altiplan run --set` can repeat the run.
 class Budget {
  public:
@@ -26,16 +38,10 @@ class Budget {
       : budget_(budget), where_(where), problems_(problems), variants_(variants) {}
 
   void give(Variant& variant) const {
-    if (!budget_.time_s && !budget_.iterations) {
-      return;
+    if (budget_.time_s || budget_.iterations) {
+      const Value tree = tree_of(variant, host::FileOfKey::pipeline);
+      give_all(variant, tree.find("steps"), "steps");
     }
-    Value tree = host::load_yaml(variant.file);
-    try {
-      host::apply_overrides(tree, variant.set, host::FileOfKey::pipeline);
-    } catch (const ConfigError&) {
-      return;  // reported when the pipeline is read
-    }
-    give_all(variant, tree.find("steps"), "steps");
   }
 
  private:
@@ -139,10 +145,93 @@ void read_pipelines(StudyPlan& plan, const Value& tree, StudyProblems& problems,
   }
 }
 
+/// Gives every pipeline the metrics of the study, as assignments, so that `altiplan run --set` can
+/// repeat the run.
+class StudyMetrics {
+ public:
+  StudyMetrics(const StudyPlan& plan, const Value& tree, StudyVariants& variants,
+               const std::vector<fs::path>& plugin_path)
+      : file_(plan.file),
+        tree_(tree),
+        variants_(variants),
+        plugin_path_(plugin_path) {}
+
+  void give(Variant& variant) const {
+    const Value tree = tree_of(variant, host::FileOfKey::pipeline);
+    const Value* list = tree.find("metrics");
+    std::size_t next = list != nullptr ? list->items.size() : 0;
+    for (std::size_t i = 0; i < file_.metrics.size(); ++i) {
+      const MetricChoice& metric = file_.metrics[i];
+      if (metric.plugin.empty()) {
+        continue;
+      }
+      const Value::Entry entry{metric.plugin, metric.parameters.where,
+                               settled(tree, metric.plugin, metric.parameters)};
+      const std::string key = host::item("metrics", next++);
+      const std::string text = key + "={id: " + metric.name + ", " +
+                               host::exact_json_text(entry.key) + ": " + flow_text(entry.value) +
+                               "}";
+      // An assignment adds an item to a list, not the list.
+      if (list == nullptr && next == 1) {
+        variant.set.push_back("metrics=[]");
+      }
+      variant.set.push_back(text);
+      variants_.remember(text, tree_.find("metrics")->items[i].where, host::item("metrics", i));
+    }
+  }
+
+ private:
+  /// The parameters with absolute paths: those of a pipeline are relative to its own folder.
+  Value settled(const Value& pipeline, const std::string& name, Value parameters) const {
+    if (name == "weighted") {
+      if (Value* of = parameters.find("of")) {
+        for (Value& term : of->items) {
+          for (Value::Entry& entry : term.entries) {
+            if (entry.key != "weight") {
+              entry.value = settled(pipeline, entry.key, entry.value);
+            }
+          }
+        }
+      }
+      return parameters;
+    }
+    for (const BoundField& field : describe(pipeline, name, parameters).fields) {
+      Value* path = parameters.find(field.spec.name);
+      if (field.spec.type == FieldType::path && path != nullptr) {
+        path->text = host::parse_yaml(field.value_json, "").text;
+        path->quoted = true;
+      }
+    }
+    return parameters;
+  }
+
+  ParamReport describe(const Value& pipeline, const std::string& name,
+                       const Value& parameters) const {
+    std::vector<fs::path> folders = plugin_path_;
+    if (const Value* own = pipeline.find("plugins")) {
+      for (const Value& folder : own->items) {
+        folders.push_back(fs::path(pipeline.where.file).parent_path() / folder.text);
+      }
+    }
+    try {
+      host::Registry registry(host::Registry::search_path(folders));
+      return host::plugin(registry, "objective", name).describe(&parameters, "");
+    } catch (const Error&) {
+      return {};  // reported when the pipeline is read
+    }
+  }
+
+  const StudyFile& file_;
+  const Value& tree_;
+  StudyVariants& variants_;
+  const std::vector<fs::path>& plugin_path_;
+};
+
 void check_metrics(const StudyPlan& plan, const Value& tree, StudyProblems& problems) {
+  const std::vector<std::string> own = own_metrics(plan);
   for (std::size_t i = 0; i < plan.file.metrics.size(); ++i) {
     const Value& at = tree.find("metrics")->items[i];
-    if (const std::string why = why_no_value(plan.file.metrics[i].name); !why.empty()) {
+    if (const std::string why = why_no_value(plan.file.metrics[i].name, own); !why.empty()) {
       problems.add(host::place_of(at, "name"), host::item("metrics", i) + ".name", why);
     }
   }
@@ -153,6 +242,7 @@ void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& probl
   for (const Variant& pipeline : plan.pipelines) {
     names.push_back(pipeline.name);
   }
+  const std::vector<std::string> own = own_metrics(plan);
   std::set<std::string> ids;
   for (std::size_t i = 0; i < plan.file.claims.size(); ++i) {
     const ClaimEntry& claim = plan.file.claims[i];
@@ -170,7 +260,7 @@ void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& probl
       continue;
     }
     for (const ClaimValue& value : read_quantity(claim.that, names).values) {
-      if (const std::string why = why_no_value(value.name); !why.empty()) {
+      if (const std::string why = why_no_value(value.name, own); !why.empty()) {
         problems.add(host::place_of(at, "that"), path + ".that", why);
       }
     }
@@ -219,7 +309,30 @@ Problem StudyVariants::placed(const Problem& problem) const {
   return {found->second.first, found->second.second, problem.key + ": " + problem.message};
 }
 
-StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVariants& variants) {
+std::vector<std::string> own_metrics(const StudyPlan& plan) {
+  std::set<std::string> names;
+  const auto add = [&](const std::vector<Variant>& variants, host::FileOfKey file) {
+    std::set<std::string> seen;
+    for (const Variant& variant : variants) {
+      if (!seen.insert(variant.of).second) {
+        continue;  // variants of one file differ in other keys
+      }
+      const Value tree = tree_of(variant, file);
+      const Value* list = tree.find("metrics");
+      for (std::size_t i = 0; list != nullptr && i < list->items.size(); ++i) {
+        host::MetricEntry entry;
+        bind(entry, &list->items[i]);
+        names.insert(entry.id.empty() ? entry.plugin : entry.id);
+      }
+    }
+  };
+  add(plan.scenarios, host::FileOfKey::scenario);
+  add(plan.pipelines, host::FileOfKey::pipeline);
+  return {names.begin(), names.end()};
+}
+
+StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVariants& variants,
+                     const std::vector<fs::path>& plugin_path) {
   StudyPlan plan;
   plan.path = fs::absolute(study).lexically_normal();
   const Value tree = host::load_yaml(plan.path);
@@ -235,6 +348,10 @@ StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVarian
   read_scenarios(plan, tree, problems, variants);
   read_pipelines(plan, tree, problems, variants);
   problems.finish();
+  const StudyMetrics metrics(plan, tree, variants, plugin_path);
+  for (Variant& pipeline : plan.pipelines) {
+    metrics.give(pipeline);
+  }
   check_metrics(plan, tree, problems);
   check_claims(plan, tree, problems);
   const Budget budget(plan.file.budget, host::place_of(tree, "budget"), problems, variants);

@@ -60,5 +60,9 @@ class StudyVariants {
 
 /// The study with its variants, without runs.
 StudyPlan read_study(const std::filesystem::path& study, StudyProblems& problems,
-                     StudyVariants& variants);
+                     StudyVariants& variants,
+                     const std::vector<std::filesystem::path>& plugin_path);
+
+/// Names of the objectives that runs of the study are measured by.
+std::vector<std::string> own_metrics(const StudyPlan& plan);
 }  // namespace altiplan::study

@@ -10,6 +10,7 @@
 
 #include "study/claims/claims.hpp"
 #include "study/figures/text.hpp"
+#include "study/model/run_values.hpp"
 
 namespace altiplan::study::report {
 namespace {
@@ -233,6 +234,60 @@ class MetricAnalyser {
   bool is_of_every_run_;
   MetricAnalysis analysis_;
 };
+/// The trade between two metrics; no pipelines where none has both values.
+Trade trade_of(const StudyData& data, const std::vector<Pair>& pairs,
+               const std::array<std::string, 2>& metrics) {
+  Trade trade;
+  trade.metrics = metrics;
+  const auto value = [&](std::size_t row, std::size_t k) {
+    const bool is_solved = row != kNoRow && data.rows[row].solved();
+    const double found = is_solved ? data.rows[row].values[data.column(metrics[k])] : kNone;
+    return std::isfinite(found) ? (trade.is_negated[k] ? -found : found) : kNone;
+  };
+  const auto has_both = [&](std::size_t row) {
+    return !std::isnan(value(row, 0)) && !std::isnan(value(row, 1));
+  };
+  for (std::size_t k = 0; k < 2; ++k) {
+    trade.is_negated[k] = better(data, metrics[k]) == Better::higher;
+  }
+  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
+    if (std::any_of(pairs.begin(), pairs.end(),
+                    [&](const Pair& pair) { return has_both(pair.rows[p]); })) {
+      trade.pipelines.push_back(p);
+    }
+  }
+  std::vector<std::array<std::vector<double>, 2>> values(trade.pipelines.size());
+  for (const Pair& pair : pairs) {
+    if (std::all_of(trade.pipelines.begin(), trade.pipelines.end(),
+                    [&](std::size_t p) { return has_both(pair.rows[p]); })) {
+      ++trade.pairs;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i][0].push_back(value(pair.rows[trade.pipelines[i]], 0));
+        values[i][1].push_back(value(pair.rows[trade.pipelines[i]], 1));
+      }
+    }
+  }
+  if (trade.pipelines.empty() || trade.pairs == 0) {
+    trade.pipelines.clear();
+    return trade;
+  }
+  for (const auto& [first, second] : values) {
+    trade.places.push_back({median(first), median(second)});
+  }
+  Place best{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto [least, most] =
+        std::minmax_element(trade.places.begin(), trade.places.end(),
+                            [&](const Place& a, const Place& b) { return a[k] < b[k]; });
+    best[k] = (*least)[k];
+    trade.reference[k] = (*most)[k] + 0.1 * ((*most)[k] - best[k]);
+  }
+  trade.front = non_dominated(trade.places);
+  trade.hypervolume = hypervolume(trade.places, trade.reference);
+  const double all = (trade.reference[0] - best[0]) * (trade.reference[1] - best[1]);
+  trade.share = all > 0 ? trade.hypervolume / all : kNone;
+  return trade;
+}
 }  // namespace
 
 std::size_t resamples(std::size_t pairs, std::size_t pipelines) {
@@ -256,6 +311,22 @@ Analysis analyse(const StudyData& data, bool times) {
       analysis.left_out.push_back(metric + (!times && varies(metric)
                                                 ? " is not compared: it varies between equal runs."
                                                 : " is not compared: no run has this value."));
+    }
+  }
+  for (std::size_t a = 0; a < analysis.metrics.size(); ++a) {
+    for (std::size_t b = a + 1; b < analysis.metrics.size(); ++b) {
+      const std::string& first = analysis.metrics[a].metric;
+      const std::string& second = analysis.metrics[b].metric;
+      if (!is_own_metric(first) || !is_own_metric(second)) {
+        continue;
+      }
+      analysis.trades.push_back(trade_of(data, pairs, {first, second}));
+      if (analysis.trades.back().pipelines.empty()) {
+        analysis.trades.pop_back();
+        analysis.left_out.push_back(first + " and " + second +
+                                    " are not weighed: no pair (scenario, repetition) has both of "
+                                    "every pipeline that solved.");
+      }
     }
   }
   return analysis;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,11 +85,25 @@ struct MetricAnalysis {
   std::string why_no_ranking;
 };
 
+/// The pipelines in two metrics of one's own: medians over the pairs that all of them solved.
+struct Trade {
+  std::array<std::string, 2> metrics;
+  std::array<bool, 2> is_negated{};     ///< more is better: negated in places
+  std::vector<std::size_t> pipelines;   ///< those that solved any run with both values
+  std::vector<Place> places;            ///< one per entry of pipelines; less is better
+  std::size_t pairs = 0;                ///< that all of them solved
+  std::vector<std::size_t> front;       ///< indices into places
+  Place reference{};                    ///< worst of both values, and a tenth of the range more
+  double hypervolume = 0;
+  double share = 0;                     ///< of the rectangle from the best of both values
+};
+
 struct Analysis {
   std::vector<Success> success;  ///< one per pipeline
   std::vector<SuccessComparison> success_comparisons;
   std::vector<MetricAnalysis> metrics;
-  std::vector<std::string> left_out;  ///< sentences on metrics that no run has
+  std::vector<Trade> trades;          ///< of each two metrics of one's own
+  std::vector<std::string> left_out;  ///< sentences on metrics that no run has, and trades
 };
 
 /// `data` and `times` as for in_order.

@@ -24,6 +24,8 @@ std::optional<Figure> effort_figure(const StudyData& data, const std::string& me
 /// Dolan and Moré's performance profile; nothing if the metric is not a cost, or no pair has all
 /// values.
 std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis& metric);
+/// The pipelines in two metrics, and the front of those that none beats in both.
+Figure pareto_figure(const StudyData& data, const Trade& trade);
 /// Best and mean length by iteration, and the number of a population that found a route.
 Figure convergence_figure(const StudyData& data, const Convergence& convergence);
 

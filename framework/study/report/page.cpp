@@ -224,6 +224,7 @@ std::string contents_html(const Content& content) {
     out += "<a href=\"#metric-" + slug(metric.metric) + "\">" + html(metric_title(metric.metric)) +
            "</a>";
   }
+  out += content.trade_figures.empty() ? "" : "<a href=\"#pareto\">Pareto</a>";
   out += content.effort_figures.empty() ? "" : "<a href=\"#effort\">Effort</a>";
   out += content.convergence.empty() ? "" : "<a href=\"#convergence\">Convergence</a>";
   return out +
@@ -281,6 +282,13 @@ std::string page_text(const Content& content) {
     metrics += folded("Values of solved runs, all metrics", html_text(metric_table(content)));
   }
   body += section("metrics", "Metrics", metrics);
+  if (!content.trade_figures.empty()) {
+    std::string trades = figures_html(content.trade_figures);
+    for (const Trade& trade : content.analysis.trades) {
+      trades += table_html(pareto_table(content, trade), 30);
+    }
+    body += section("pareto", "Pareto fronts", trades);
+  }
   if (!content.effort_figures.empty()) {
     body += section("effort", "Solved by effort", figures_html(content.effort_figures));
   }

@@ -41,6 +41,7 @@ struct Content {
   std::vector<FailureGroup> failures;
   std::vector<Figure> success_figures;
   std::vector<std::vector<Figure>> metric_figures;  ///< one list per metric of the analysis
+  std::vector<Figure> trade_figures;  ///< one per trade of the analysis
   std::vector<Figure> effort_figures;
   std::vector<Convergence> convergence;
   std::vector<Figure> convergence_figures;  ///< of the first kMaxConvergence
@@ -55,6 +56,8 @@ Table success_table(const Content& content);
 Table success_comparison_table(const Content& content);
 Table metric_table(const Content& content);
 Table comparison_table(const Content& content, const MetricAnalysis& metric);
+/// The pipelines of a trade: those of the front, and what it loses without each.
+Table pareto_table(const Content& content, const Trade& trade);
 /// The iterations at which the searches of each pipeline came near to their final length.
 Table convergence_table(const Content& content);
 /// One row per scenario: solved runs of each pipeline, and the median of the first metric.

@@ -223,6 +223,31 @@ Table comparison_table(const Content& content, const MetricAnalysis& metric) {
   return table;
 }
 
+Table pareto_table(const Content& content, const Trade& trade) {
+  Table table{"pareto-" + slug(trade.metrics[0]) + "-" + slug(trade.metrics[1]),
+              metric_title(trade.metrics[0]) + " against " + metric_title(trade.metrics[1]) +
+                  ": medians over " + counted(trade.pairs, "pair") +
+                  ", whether no pipeline is better in both, and the hypervolume lost without it",
+              columns({"pipeline", "#" + metric_label(trade.metrics[0]),
+                       "#" + metric_label(trade.metrics[1]), "non-dominated",
+                       "#hypervolume lost"}),
+              {}};
+  for (std::size_t i = 0; i < trade.pipelines.size(); ++i) {
+    std::vector<Place> others = trade.places;
+    others.erase(others.begin() + std::ptrdiff_t(i));
+    const auto shown = [&](std::size_t k) {
+      const double value = trade.is_negated[k] ? -trade.places[i][k] : trade.places[i][k];
+      return Cell(readable_value(trade.metrics[k], value), value);
+    };
+    const bool is_on_front =
+        std::find(trade.front.begin(), trade.front.end(), i) != trade.front.end();
+    table.rows.push_back({name(content, trade.pipelines[i]), shown(0), shown(1),
+                          is_on_front ? "yes" : "no",
+                          number(trade.hypervolume - hypervolume(others, trade.reference))});
+  }
+  return table;
+}
+
 Table pipeline_table(const Content& content) {
   Table table{"pipelines", "Pipelines", columns({"pipeline", "file", "keys set"}), {}};
   for (const StoredVariant& variant : content.data.pipelines) {

@@ -105,6 +105,9 @@ void draw(Content& content) {
     }
     content.metric_figures.push_back(std::move(figures));
   }
+  for (const Trade& trade : content.analysis.trades) {
+    content.trade_figures.push_back(pareto_figure(data, trade));
+  }
   for (const char* effort : {"plan_time_s", "expanded"}) {
     if (auto figure = effort_figure(data, effort)) {
       content.effort_figures.push_back(std::move(*figure));
@@ -152,6 +155,7 @@ std::vector<Figure> all_figures(const Content& content) {
   for (const auto& figures : content.metric_figures) {
     all.insert(all.end(), figures.begin(), figures.end());
   }
+  all.insert(all.end(), content.trade_figures.begin(), content.trade_figures.end());
   all.insert(all.end(), content.effort_figures.begin(), content.effort_figures.end());
   all.insert(all.end(), content.convergence_figures.begin(), content.convergence_figures.end());
   return all;
@@ -164,6 +168,9 @@ void write_tables(const Content& content, const fs::path& folder) {
     for (const MetricAnalysis& metric : content.analysis.metrics) {
       tables.push_back(comparison_table(content, metric));
     }
+  }
+  for (const Trade& trade : content.analysis.trades) {
+    tables.push_back(pareto_table(content, trade));
   }
   if (!content.convergence.empty()) {
     tables.push_back(convergence_table(content));

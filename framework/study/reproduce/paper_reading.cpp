@@ -101,7 +101,7 @@ class Reading {
     if (!studies_.contains(runs.study)) {
       StudyProblems problems;
       StudyVariants variants(problems);
-      studies_[runs.study] = read_study(runs.study, problems, variants);
+      studies_[runs.study] = read_study(runs.study, problems, variants, {});
       problems.finish();
     }
     const StudyPlan& study = studies_.at(runs.study);
@@ -236,13 +236,14 @@ class Reading {
   /// Checks the quantity, and notes the pipelines that it names.
   void add_figure(ReproducibleRow& row, const PaperFigure& figure, const Location& where,
                   const std::string& key) {
-    const std::vector<std::string> pipelines =
-        names_of(studies_.at(paper_.runs[row.runs].study).pipelines);
+    const StudyPlan& study = studies_.at(paper_.runs[row.runs].study);
+    const std::vector<std::string> pipelines = names_of(study.pipelines);
+    const std::vector<std::string> own = own_metrics(study);
     const std::string of = "of row '" + row.id + "': " + figure.claim.that + ": ";
     try {
       for (const ClaimValue& value : read_quantity(figure.claim.that, pipelines).values) {
         row.pipelines.insert(pipelines[value.pipeline]);
-        if (const std::string why = why_no_value(value.name); !why.empty()) {
+        if (const std::string why = why_no_value(value.name, own); !why.empty()) {
           problems_.add(where, key, of + why);
         }
       }

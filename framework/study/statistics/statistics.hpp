@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -62,6 +63,16 @@ struct BoxPlot {
 };
 /// Nothing if the sample is empty or a value is infinite.
 std::optional<BoxPlot> box_plot(std::span<const double> sample);
+
+/// Two values of one thing, of which less is better.
+using Place = std::array<double, 2>;
+/// Indices of the points that no other is at least as good as in both values, without being equal;
+/// by the first value. Finite points.
+std::vector<std::size_t> non_dominated(std::span<const Place> points);
+/// The area between them and the reference: of places better than that in both values, and no
+/// better than some point in both. Exact. E. Zitzler, L. Thiele, Multiobjective Optimization Using
+/// Evolutionary Algorithms, PPSN V, 1998, doi:10.1007/BFb0056872.
+double hypervolume(std::span<const Place> points, const Place& reference);
 
 /// A point of a step function with the value `share` from `at` on.
 struct CurvePoint {
