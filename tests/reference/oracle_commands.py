@@ -150,9 +150,11 @@ def px4_feasibility(mission):
         if item.alt - (mission.home[2] if item.frame in (0, 5) else 0) <= 0:
             found.append("take-off not above home")
     lands = any(item.command in LANDINGS for item in placed)
-    if kind != "PM" and not lands and not any(item.command == 20 for item in mission.items):
+    if kind != "PM" and not lands:
         found.append("no landing")
     starts = [item for item in mission.items if item.command == 189]
+    if starts and any(item.command == 20 and item.number > starts[0].number for item in mission.items):
+        found.append("return behind a landing start")
     if len(starts) > 1 or starts and not lands:
         found.append("landing starts without landing, or two of them")
     if kind == "PF":
@@ -229,6 +231,8 @@ class Order:
                            if i.command == 600 and i.param(1) == item.param(1)), None)
         if target is None or not 0 <= target < len(self.items):
             return None
+        if repeats < -1 and not self.is_px4:
+            repeats = 0  # none
         if repeats < 0 and self.is_px4:
             self.doubts.append("PX4 has no jumps for ever")
             repeats = 65535

@@ -226,6 +226,9 @@ bool Walker::carry_out(std::size_t n) {
   if (is_too_far(n, destination(n).at)) {
     return true;
   }
+  if (keeps_height(commands_[n]) && formats::is_above_ground(commands_[n].frame)) {
+    return give_up(n, "an altitude of 0 keeps the height above the ground, which is not judged");
+  }
   Flown& flown = flown_[way_to(n)];
   flight_.repeats = flown.times++;
   if (flight_.repeats > kFlownAnew) {  // nothing new is seen

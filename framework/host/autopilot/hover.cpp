@@ -225,6 +225,8 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
   flight_.begin(command, what);
   const double vertical = std::max(std::max(to.high - low, 0.0) / climb_rate(),
                                    std::max(high - to.low, 0.0) / sink_rate());
+  const double rise = std::max(to.low - high, 0.0);  // at least
+  const double drop = std::max(low - to.high, 0.0);
   const double along = (to.at - at).norm();
   const Vec3 from = at_height(at, low);
   const bool is_px4 = flight_.autopilot().is_px4();
@@ -258,8 +260,9 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
     }
   }
   left_.reset();
-  const double both_ends = is_px4 ? 2.4 : 6.5;  // v / a + a / jerk
-  flight_.take({std::max(along / speed_mps[1], std::abs(to.low - from.z()) / climb_rate()) * 0.95,
+  const double a = is_px4 ? 3 : 2.5;
+  const double both_ends = speed_mps[1] / a + a / (is_px4 ? 4 : 1);  // v / a + a / jerk
+  flight_.take({std::max({along / speed_mps[1], rise / climb_rate(), drop / sink_rate()}) * 0.95,
                 std::max(along / speed_mps[0], vertical) + both_ends});
   previous_ = from;
   at = to.at;

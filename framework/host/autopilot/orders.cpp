@@ -37,6 +37,9 @@ bool Walker::set_home(std::size_t n) {
   const bool is_nowhere = !command.has_position() && command.altitude_m == 0;
   const bool is_here = command.params[0] == 1 || (is_nowhere && autopilot_.is_copter());
   former_home_z_ = home_z_;
+  if (is_pending_) {
+    return give_up(n, "whether and when a condition lets it set its home is not judged");
+  }
   if (++homes_set_ > kMaxHomes) {
     return give_up(n, "sets its home more than 100 times: what it flies then is not judged");
   }
@@ -131,6 +134,27 @@ void Walker::change_speed(std::size_t n) {
   take_speed(counts, speeds, wing_speed_, cruise);
   if (wing_) {
     set_wing_speed();
+  }
+}
+
+// Returns, and PX4's transitions, are flown at the vehicle's own speeds; at those of the mission
+// too, in case.
+void Walker::forget_speeds() {
+  const auto widen = [](double* speeds, double own) {
+    if (speeds[1] > 0) {
+      speeds[0] = std::min(speeds[0], own);
+      speeds[1] = std::max(speeds[1], own);
+    }
+  };
+  if (hover_ && autopilot_.is_copter()) {
+    widen(hover_speed_, parameter(is_px4() ? "MPC_XY_CRUISE" : "WP_SPD"));
+    set_hover_speed();
+  }
+  if (!autopilot_.is_copter()) {
+    widen(wing_speed_, parameter(is_px4() ? "FW_AIRSPD_TRIM" : "AIRSPEED_CRUISE"));
+    if (wing_) {
+      set_wing_speed();
+    }
   }
 }
 

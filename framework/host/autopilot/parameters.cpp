@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -24,6 +25,7 @@ struct Row {
   std::array<double, 4> defaults;
   const char* old_name = "";  ///< up to ArduPilot 4.6
   double old_unit = 1;        ///< in units of the new one
+  double px4_vtol = kNone;    ///< of PX4's VTOL, where it is not its plane's
 };
 
 constexpr double kCm = 0.01;
@@ -82,8 +84,8 @@ const Row kRows[] = {
     {"MPC_TKO_SPEED", {kNone, kNone, 1.5, 1.5}},
     {"MPC_LAND_SPEED", {kNone, kNone, 0.7, 0.7}},
     {"MPC_LAND_CRWL", {kNone, kNone, 0.3, 0.3}},
-    {"RTL_RETURN_ALT", {kNone, kNone, 30, 100}},
-    {"RTL_DESCEND_ALT", {kNone, kNone, 30, 100}},
+    {"RTL_RETURN_ALT", {kNone, kNone, 30, 100}, "", 1, 60},
+    {"RTL_DESCEND_ALT", {kNone, kNone, 30, 100}, "", 1, 30},
     {"RTL_CONE_ANG", {kNone, kNone, 45, kNone}},
     {"RTL_MIN_DIST", {kNone, kNone, 10, kNone}},
     {"RTL_TYPE", {kNone, kNone, 0, 1}},
@@ -150,7 +152,10 @@ std::vector<std::string> words_of(const std::string& line) {
 }  // namespace
 
 ParameterFile read_parameters(const std::string& file) {
-  const std::string text = formats::read_file(file);
+  std::string text = formats::read_file(file);
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    text.erase(0, 3);
+  }
   ParameterFile values;
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
@@ -171,7 +176,15 @@ ParameterFile read_parameters(const std::string& file) {
       const std::string& word = words[name + 1];
       const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (error == std::errc() && rest == word.data() + word.size() && std::isfinite(value)) {
-        values[words[name]] = value;
+        std::string key = words[name];
+        std::transform(key.begin(), key.end(), key.begin(),
+                       [](unsigned char c) { return char(std::toupper(c)); });
+        // Other components of the vehicle have parameters of the same names.
+        if (is_of_qgc && words[1] != "1") {
+          values.emplace(key, value);
+        } else {
+          values[key] = value;
+        }
         continue;
       }
     }
@@ -191,7 +204,9 @@ double Parameters::operator()(std::string_view name) const {
   const Row& row = row_of(name);
   const std::size_t column = (autopilot_.is_px4() ? 2 : 0) + (autopilot_.is_copter() ? 0 : 1);
   const std::optional<double> given = value_in(file_, row);
-  const double value = given.value_or(row.defaults[column]);
+  const bool is_other = autopilot_.is_px4() && autopilot_.airframe == formats::Airframe::vtol &&
+                        std::isfinite(row.px4_vtol);
+  const double value = given.value_or(is_other ? row.px4_vtol : row.defaults[column]);
   if (given) {
     expect_possible(row, value);
   }

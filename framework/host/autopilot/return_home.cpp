@@ -98,7 +98,11 @@ std::vector<Walker::Refuge> Walker::refuges() const {
     }
   }
   const Refuge home{home_, {}, home_z_};
-  if (is_px4() || parameter("RALLY_INCL_HOME") != 0) {
+  const bool leaves_home_out =
+      is_px4() && !autopilot_.is_copter() && parameter("RTL_TYPE") == 1 && !plan_.rally.empty();
+  if (leaves_home_out) {
+    // PX4: RTL_TYPE 1 flies to a safe point even where home is nearer.
+  } else if (is_px4() || parameter("RALLY_INCL_HOME") != 0) {
     all.push_back(home);
     nearest = std::min(nearest, distance(home));
   } else if (!std::isfinite(nearest)) {
@@ -166,6 +170,7 @@ void Walker::return_hover(std::size_t n, const Refuge& refuge) {
     give_up(n, "a return that may go to a landing, or along the mission (RTL_TYPE), is not judged");
     return;
   }
+  forget_speeds();
   const double distance = (refuge.at - hover_->at).norm();
   double lowest = return_heights(hover_->low, distance, refuge)[0];
   double highest = return_heights(hover_->high, distance, refuge)[1];
@@ -190,13 +195,19 @@ void Walker::return_hover(std::size_t n, const Refuge& refuge) {
 }
 
 void Walker::return_wing(std::size_t n, const Refuge& refuge) {
+  forget_speeds();
   const bool has_landing =
       std::any_of(plan_.commands.begin(), plan_.commands.end(), [](const auto& command) {
         const Task task = formats::command_task(command.number).task;
         return task == Task::landing_start || task == Task::land || task == Task::vtol_land;
       });
+  const double type = is_px4() ? parameter("RTL_TYPE") : 0;
   const bool goes_to_landing =
-      has_landing && (is_px4() ? parameter("RTL_TYPE") != 0 : parameter("RTL_AUTOLAND") != 0);
+      has_landing && (is_px4() ? type != 0 : parameter("RTL_AUTOLAND") != 0);
+  if (type > 1) {
+    give_up(n, "a return along the mission (RTL_TYPE) is not judged");
+    return;
+  }
   if (goes_to_landing || (!is_px4() && parameter("Q_RTL_MODE") != 0)) {
     flight_.remark(Weight::not_judged, "not_judged", n,
                    "a return that goes to a landing or ends in hover is not judged");

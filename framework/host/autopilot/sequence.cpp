@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/autopilot/sequence.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace altiplan::host {
@@ -27,12 +28,15 @@ std::optional<std::size_t> Sequence::target_of(std::size_t n) const {
 
 int Sequence::jumps_left(std::size_t n) const {
   constexpr double kMost = 65535;
-  const bool wraps = autopilot_.is_px4() && commands_[n].params[1] < 0;  // it stores 16 bits
-  const double repeats = wraps ? kMost : commands_[n].params[1];
+  const double stored = std::trunc(commands_[n].params[1]);
+  if (stored == -1 && !autopilot_.is_px4()) {
+    return -1;
+  }
+  // PX4 stores 16 bits without a sign; ArduPilot takes other numbers below 0 for none.
+  const double repeats = stored < 0 && autopilot_.is_px4() ? stored + kMost + 1 : stored;
   const auto made = jumped_.find(n);
-  return repeats < 0 ? -1
-                     : int(std::isfinite(repeats) ? std::min(repeats, kMost) : 0) -
-                           (made == jumped_.end() ? 0 : made->second);
+  return int(std::isfinite(repeats) ? std::clamp(repeats, 0.0, kMost) : 0) -
+         (made == jumped_.end() ? 0 : made->second);
 }
 
 std::optional<std::size_t> Sequence::after_jump(std::size_t n) {
@@ -43,6 +47,9 @@ std::optional<std::size_t> Sequence::after_jump(std::size_t n) {
   const int left = jumps_left(n);
   if (left == 0) {
     return n + 1;
+  }
+  if (left < 0 && *target > n) {
+    return *target;  // ahead, as often as it is reached
   }
   if (left < 0 && jumped_[n] >= 2) {
     return std::nullopt;

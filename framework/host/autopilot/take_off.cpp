@@ -58,6 +58,10 @@ bool Walker::take_off(std::size_t n) {
     return !is_above && give_up(n, "a take-off in flight is not judged");
   }
   has_flown_ = true;
+  if (is_px4() && autopilot_.airframe == Airframe::vtol && task_of(n) == Task::take_off) {
+    return give_up(
+        n, "takes off as a copter and flies on as one, which is not judged: VTOL take-off (84)");
+  }
   if (autopilot_.airframe == Airframe::plane) {
     return take_off_along_runway(n);
   }
@@ -137,6 +141,7 @@ bool Walker::begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& 
                     "must follow");
   }
   const Eigen::Vector2d begin = hover_->at;
+  forget_speeds();
   wing_.emplace(flight_);
   set_wing_speed();
   is_winged_ = true;

@@ -19,7 +19,9 @@ bool is_of_ardupilot(Autopilot a) { return !a.is_px4(); }
 bool is_ardupilots_wing(Autopilot a) { return !a.is_px4() && !a.is_copter(); }
 bool is_ardupilots_copter(Autopilot a) { return !a.is_px4() && a.is_copter(); }
 bool is_quadplane(Autopilot a) { return !a.is_px4() && a.airframe == Airframe::vtol; }
+bool is_ardupilots_plane(Autopilot a) { return !a.is_px4() && a.airframe == Airframe::plane; }
 bool is_of_px4(Autopilot a) { return a.is_px4(); }
+bool is_px4s_copter(Autopilot a) { return a.is_px4() && a.is_copter(); }
 bool is_px4s_wing(Autopilot a) { return a.is_px4() && !a.is_copter(); }
 
 /// A parameter that changes how a mission is flown in a way that is not modelled.
@@ -40,6 +42,19 @@ constexpr Unmodelled kUnmodelled[] = {
     {"CLIMB_SLOPE_HGT", 25, 0, is_ardupilots_wing, "it climbs steeply up to another height"},
     {"ALT_SLOPE_MAXHGT", 5, 0, is_ardupilots_wing, "climbs begin anew at another height"},
     {"GLIDE_SLOPE_THR", 5, 0, is_ardupilots_wing, "climbs begin anew at another height"},
+    {"MIN_GROUNDSPEED", 0, 0, is_ardupilots_wing, "it flies as fast as it takes over the ground"},
+    {"MIN_GNDSPD_CM", 0, 0, is_ardupilots_wing, "it flies as fast as it takes over the ground"},
+    {"Q_ENABLE", 0, 0, is_ardupilots_plane, "it is a QuadPlane (--vehicle vtol)"},
+    {"WP_ACC", 2.5, 0, is_ardupilots_copter, "it takes other times to speed up"},
+    {"WPNAV_ACCEL", 250, 0, is_ardupilots_copter, "it takes other times to speed up"},
+    {"LAND_ALT_LOW_M", 10, 0, is_ardupilots_copter, "it lands slowly from another height"},
+    {"LAND_ALT_LOW", 1000, 0, is_ardupilots_copter, "it lands slowly from another height"},
+    {"CIRCLE_RATE", 20, 0, is_ardupilots_copter, "it circles at another rate"},
+    {"MPC_ACC_HOR", 3, 0, is_of_px4, "it takes other times to speed up"},
+    {"MPC_JERK_AUTO", 4, 0, is_of_px4, "it takes other times to speed up"},
+    {"MIS_TKO_LAND_REQ", 0, 0, is_px4s_copter, "it refuses other missions"},
+    {"MIS_TKO_LAND_REQ", 2, 0, is_px4s_wing, "it refuses other missions"},
+    {"FW_LND_ANG", 5, 0, is_px4s_wing, "it refuses other landings"},
     {"SOAR_ENABLE", 0, 0, is_ardupilots_wing, "it circles in thermals"},
     {"LAND_TYPE", 0, 0, is_ardupilots_wing, "it lands in a deep stall"},
     {"Q_GUIDED_MODE", 0, 0, is_quadplane, "it hovers where it else circles"},
@@ -58,6 +73,11 @@ constexpr Unmodelled kUnmodelled[] = {
 /// The same where it matters to a return alone, or where commands follow a landing.
 constexpr Unmodelled kOfReturns[] = {
     {"RTL_ALT_TYPE", 0, 0, is_ardupilots_copter, "a return at a height above the ground"},
+    {"RTL_SPEED_MS", 0, 0, is_ardupilots_copter, "a return at another speed"},
+    {"RTL_SPEED", 0, 0, is_ardupilots_copter, "a return at another speed"},
+    {"RTL_LOIT_TIME", 5000, 0, is_ardupilots_copter, "another wait above home"},
+    {"RTL_LAND_DELAY", 0, 0, is_px4s_copter, "a wait above home"},
+    {"RTL_LOITER_RAD", 80, 0, is_px4s_wing, "another circle above home"},
 };
 constexpr Unmodelled kOfLandings[] = {
     {"MIS_OPTIONS", 0, 1 << 2, is_ardupilots_copter, "it takes off again after its landing"},
@@ -136,6 +156,9 @@ void Walker::check_fences() {
     highest = type & kAltMax ? parameter("FENCE_ALT_MAX") : kInfinity;
     farthest = type & kCircle ? parameter("FENCE_RADIUS") : kInfinity;
     lowest = type & kAltMin ? parameter("FENCE_ALT_MIN") : -kInfinity;
+  }
+  if (has_new_home_ && std::min({highest, farthest, -lowest}) < kInfinity) {
+    give_up(0, "the autopilot's own fence about a home that has been set anew is not judged");
   }
   for (const FlownPart& part : mission_.parts) {
     const auto breach = [&](const char* what, double value, double limit) {

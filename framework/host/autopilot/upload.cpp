@@ -103,7 +103,7 @@ class UploadCheck {
     }
     const bool is_given = flight_.is_given("RTL_AUTOLAND");
     flight_.remark(
-        is_given ? Weight::fails : Weight::note, "arming", n,
+        is_given ? Weight::fails : Weight::not_judged, "arming", n,
         autopilot_.name() + " does not arm with this command unless RTL_AUTOLAND is set");
   }
 
@@ -247,7 +247,6 @@ bool UploadCheck::check_feasibility() {
   std::optional<std::size_t> before;  // the last position
   std::size_t starts = 0;
   bool lands = false;
-  bool returns = false;
   bool is_valid = true;
   for (std::size_t n = 0; n < commands_.size(); ++n) {
     const Task task = commands_.task_of(n).task;
@@ -255,7 +254,9 @@ bool UploadCheck::check_feasibility() {
     const bool is_landing = task == Task::land || task == Task::vtol_land;
     starts += task == Task::landing_start;
     lands = lands || is_landing;
-    returns = returns || task == Task::return_home;
+    if (task == Task::return_home && starts > 0) {
+      is_valid = refuse(n, "refuses a return behind a landing start");
+    }
     if (is_take_off && before) {
       is_valid = refuse(n, "takes off at the first position of a mission alone");
     }
@@ -270,7 +271,7 @@ bool UploadCheck::check_feasibility() {
     }
     before = formats::flies_to_position(task) ? std::optional(n) : before;
   }
-  if (before && !autopilot_.is_copter() && !lands && !returns) {
+  if (before && !autopilot_.is_copter() && !lands) {
     is_valid = refuse(*before, "refuses a mission without a landing (MIS_TKO_LAND_REQ)");
   }
   if (before && (starts > 1 || (starts > 0 && !lands))) {

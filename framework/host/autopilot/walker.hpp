@@ -107,6 +107,9 @@ class Walker {
 
   void change_speed(std::size_t n);
 
+  /// What a mission has said of speeds counts no more, or counts still.
+  void forget_speeds();
+
   /// A speed behind a condition may be lost: then both count.
   void take_speed(bool counts, const double* speeds, double* present, double own) const;
 
