@@ -190,6 +190,25 @@ class Returns(PlanCase):
         told = self.returns(PX4_COPTER, [(22, 0, 0, 50), (82, 300, 0, 50)], code=1)
         self.assertEqual(told["returns"]["verdict"], "not_judged")
 
+    def test_a_battery_that_ends_before_the_way_home(self):
+        way = [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 100, 50)]
+
+        def returns(wh, code, *more):
+            return self.returns(COPTER, way, "--battery", str(wh), "--power", "360", *more, code=code)["returns"]
+
+        plenty = returns(100, 0)
+        self.assertGreater(plenty["point_of_no_return_s"], 150)  # the end of the flight
+        # 0.1 Wh a second: 240 s with the reserve, of which the climb takes 20, and the landing about 50.
+        few = returns(30, 1)
+        self.assertEqual([one["rule"] for one in few["refused"]], ["energy"])
+        self.assertAlmostEqual(few["refused"][0]["limit"], 24)
+        self.assertTrue(20 < few["point_of_no_return_s"] < 110, few)
+        self.assertAlmostEqual(few["point_of_no_return_s"], few["refused"][0]["from_s"], delta=1)
+        more = returns(30, 0, "--reserve", "0")
+        self.assertGreater(more["point_of_no_return_s"], few["point_of_no_return_s"])
+        _, err = self.call("mission.plan", "--terrain", "ridge.asc", "--battery", "30", "--power", "360", code=2)
+        self.assertIn("--returns", err)
+
     def test_the_option_needs_a_mission(self):
         _, err = self.call("--returns", "mission.plan", code=2)
         self.assertIn("is a mission: add --terrain", err)

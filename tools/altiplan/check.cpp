@@ -149,6 +149,26 @@ std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
                ".waypoints)")};
 }
 
+/// What the flight and its returns are flown on.
+void add_battery(App& command, PlanCheck& plan, Option* returns) {
+  auto* battery = command
+                      .add_option("--battery WH", plan.battery_wh,
+                                  "with --returns: its capacity (Wh), which each must keep to")
+                      ->check(number_from(0.001, 1e6))
+                      ->needs(returns);
+  auto* power = command
+                    .add_option("--power W", plan.battery.power_w,
+                                "with --battery: power that the vehicle takes in flight (W)")
+                    ->check(number_from(0.001, 1e6))
+                    ->needs(battery);
+  battery->needs(power);
+  command
+      .add_option("--reserve SHARE", plan.battery.reserve,
+                  "share of the battery that is kept (default 0.2)")
+      ->check(number_from(0, 0.99))
+      ->needs(battery);
+}
+
 /// A mission whose ending is not its format's is told by --scenario or --terrain.
 bool is_plan(const CheckArguments& arguments) {
   return arguments.result &&
@@ -202,6 +222,7 @@ void add_check(App& app, Action& action) {
   *outputs = add_outputs(command, arguments.mission.plan);
   outputs->push_back(command.add_flag("--returns", arguments.mission.plan.returns,
                                       "also judge the failsafe return from every second of it"));
+  add_battery(command, arguments.mission.plan, outputs->back());
   add_plugin_path(command, arguments.overrides);
   command.add_flag("--json", arguments.mission.plan.json, "print as JSON");
   set_example(command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");

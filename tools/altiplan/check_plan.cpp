@@ -82,6 +82,10 @@ void print(const PlanReport& report, const host::Mission& world) {
   if (report.returns) {
     std::printf("returns %s: %s\n", colored(report.returns->verdict).c_str(),
                 host::printable(report.returns->in_words()).c_str());
+    if (report.returns->point_of_no_return_s) {
+      std::printf("  point of no return: %s s after take-off\n",
+                  fixed(*report.returns->point_of_no_return_s, 0).c_str());
+    }
     for (const host::RefusedReturn& refused : report.returns->refused) {
       std::printf("  %s\n", host::printable(in_words(refused, report)).c_str());
       if (refused.finding.at) {
@@ -132,7 +136,8 @@ Json returns_json(const host::ReturnsReport& returns, const host::Mission& world
       {"verdict", key_of(returns.verdict)},
       {"worst",
        worst == nullptr ? Json() : Json{{"time_s", worst->worst_s}, {"item", worst->finding.item}}},
-      {"point_of_no_return_s", Json()},  // no battery is known
+      {"point_of_no_return_s",
+       returns.point_of_no_return_s ? Json(*returns.point_of_no_return_s) : Json()},
       {"refused", refused},
       {"not_judged", returns.unjudged},
       {"parameters", parameters}};
@@ -386,6 +391,10 @@ host::WorldDuring world_during(const PlanCheck& plan, const formats::MissionFile
 
 PlanCheck prepared(PlanCheck plan) {
   plan.gate.own_ends = !plan.scenario;
+  if (plan.battery_wh) {
+    plan.gate.battery = plan.battery;
+    plan.gate.battery->capacity_wh = *plan.battery_wh;
+  }
   if (plan.parameters) {
     plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
   }

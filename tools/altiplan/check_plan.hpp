@@ -28,6 +28,8 @@ struct PlanCheck {
   std::optional<std::string> start_time;
   std::optional<double> flown_s;  ///< for zones with hours; none: as long as the mission takes
   bool returns = false;           ///< failsafe returns are judged, too
+  std::optional<double> battery_wh;
+  host::Battery battery;  ///< without the capacity
   bool json = false;
   std::optional<std::string> certificate;
   std::optional<std::string> junit;

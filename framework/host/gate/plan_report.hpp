@@ -57,6 +57,9 @@ struct ReturnsReport {
   std::vector<RefusedReturn> refused;  ///< by autopilot, and in the order of time
   std::vector<std::string> unjudged;   ///< why there is no verdict
   std::vector<Parameters::Used> parameters;
+  /// The last second from which, on the slowest flight, the battery lasts for the way home, its
+  /// reserve apart; none: no battery is known.
+  std::optional<double> point_of_no_return_s{};
   /// The worst of the refused; none: nothing is refused.
   const RefusedReturn* worst() const;
   /// "from every second, of ArduPilot copter", what is refused, or why it is not judged.
@@ -118,6 +121,15 @@ void expect_route(const std::string& file, const formats::MissionFile& plan);
 /// The world as it is from one time of the flight to another, in seconds.
 using WorldDuring = std::function<Mission(double, double)>;
 
+/// What a vehicle has to fly on, and the power that it takes on the whole.
+struct Battery {
+  double capacity_wh = 0;
+  double reserve = 0.2;  ///< share that is kept
+  double power_w = 0;
+
+  double usable_wh() const { return capacity_wh * (1 - reserve); }
+};
+
 /// Who may fly it, as far as the user says.
 struct GateOptions {
   std::optional<formats::Firmware> firmware{};
@@ -125,7 +137,8 @@ struct GateOptions {
   FlightOptions flight{};
   double drawn_mps = 5;        ///< speed along drawn lines
   WorldDuring world_during{};  ///< none: it is the same all the time
-  bool own_ends = true;        ///< the route need not begin and end where the world's scenario says
+  std::optional<Battery> battery{};
+  bool own_ends = true;  ///< the route need not begin and end where the world's scenario says
 };
 
 /// From the fastest to the slowest of the flights.

@@ -56,9 +56,9 @@ std::string PlanReport::height_in_words() const {
 }
 
 const RefusedReturn* ReturnsReport::worst() const {
-  const auto off = [](const RefusedReturn& refused) {
+  const auto off = [](const RefusedReturn& refused) {  // what hits something is worse
     const Violation& violation = refused.finding.violation;
-    return std::abs(violation.value - violation.limit);
+    return std::pair(violation.unit != "Wh", std::abs(violation.value - violation.limit));
   };
   const auto found = std::max_element(
       refused.begin(), refused.end(),

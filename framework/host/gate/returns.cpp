@@ -56,12 +56,14 @@ double middle(const TimeSpan& time) {
 class ReturnJudge {
  public:
   ReturnJudge(const formats::MissionFile& plan, const FailsafeReturns& returns,
-              const Request& request, const std::string& prefix, ReturnsReport& report)
+              const Request& request, const std::optional<Battery>& battery,
+              const std::string& prefix, ReturnsReport& report)
       : plan_(plan),
         returns_(returns),
         world_(*request.world),
         judge_(request),
         names_(world_),
+        battery_(battery),
         prefix_(prefix),
         finest_(kFinest[returns.mission().autopilot.is_copter() ? 0 : 1]),
         report_(report) {}
@@ -74,20 +76,34 @@ class ReturnJudge {
       }
     }
     double begin_s = 0;
+    double latest_s = 0;
+    double last_s = 0;
     for (const FlownPart& part : mission.parts) {
       const double end_s = std::max(middle(part.time), begin_s);
       const bool lands_on_wings = part.ground == FlownPart::Ground::touched_along;
       if (!part.is_return && !lands_on_wings && !part.strips.empty()) {
         begin(part, begin_s, end_s);
+        latest_ = {latest_s, std::max(part.time.max_s, part.until_s)};
         judge(std::span(part.strips));
+        last_s = end_s;
       }
       begin_s = end_s;
+      latest_s = part.time.max_s;
     }
     if (mission.parts.empty()) {
       add_unjudged("the mission is not flown");
     }
     report_.parameters.insert(report_.parameters.end(), parameters_.begin(), parameters_.end());
     add_stretches();
+    if (battery_) {
+      for (const Refused& refused : refused_) {
+        if (is_too_much(refused.needed_wh)) {
+          last_s = std::min(last_s, refused.from_s);
+        }
+      }
+      report_.point_of_no_return_s =
+          std::min(report_.point_of_no_return_s.value_or(last_s), last_s);
+    }
   }
 
  private:
@@ -96,6 +112,7 @@ class ReturnJudge {
     double to_s;
     std::size_t command;
     Whereabouts place;
+    double needed_wh;  ///< by then and for the way home; 0: no battery is known
   };
 
   /// Along a part time passes evenly.
@@ -113,16 +130,31 @@ class ReturnJudge {
   }
 
   std::array<double, 2> times_of(const Whereabouts& place) const {
+    const auto at = [&](double share) { return begin_s_ + share * (end_s_ - begin_s_); };
+    return {at(share_of(place, -finest_ / 2, 0)), at(share_of(place, finest_ / 2, 1))};
+  }
+
+  /// How much of the part's time has passed so far beyond the place.
+  double share_of(const Whereabouts& place, double beyond_m, double unknown) const {
     const Eigen::Vector2d way = to_ - from_;
     if (way.norm() < 1 || !part_->what.empty()) {
-      return {begin_s_, end_s_};
+      return unknown;
     }
-    const auto at = [&](double off) {
-      const double share =
-          std::clamp(((place.at - from_).dot(way) / way.norm() + off) / way.norm(), 0.0, 1.0);
-      return begin_s_ + share * (end_s_ - begin_s_);
-    };
-    return {at(-finest_ / 2), at(finest_ / 2)};
+    return std::clamp(((place.at - from_).dot(way) / way.norm() + beyond_m) / way.norm(), 0.0, 1.0);
+  }
+
+  /// On the slowest flight, by the end of the place and for the way home from there.
+  double needed_wh(const Whereabouts& place, const FlownMission& home) const {
+    if (!battery_) {
+      return 0;
+    }
+    // A part that is flown again counts as it is at its last end.
+    const double share = part_->until_s > 0 ? 1 : share_of(place, place.radius_m, 1);
+    const double spent_s = share < 1 ? latest_[0] + share * (latest_[1] - latest_[0]) : latest_[1];
+    return (spent_s + home.time.max_s) * battery_->power_w / 3600;
+  }
+  bool is_too_much(double needed_wh) const {
+    return battery_ && !(needed_wh <= battery_->usable_wh());
   }
 
   void judge(std::span<const Strip> strips) {
@@ -145,14 +177,15 @@ class ReturnJudge {
       return;
     }
     const auto [from_s, to_s] = times_of(place);
-    refused_.push_back({from_s, to_s, part_->command, place});
+    const double needed = needed_wh(place, returns_.from(part_->command, place));
+    refused_.push_back({from_s, to_s, part_->command, place, needed});
   }
 
   /// True as well where the return is not judged, which is noted.
   bool is_valid(const Whereabouts& place) {
     FlownMission home = returns_.from(part_->command, place);
     parameters_ = std::move(home.parameters);  // with those of all before it
-    bool is_refused = false;
+    bool is_refused = is_too_much(needed_wh(place, home));
     bool is_unjudged = false;
     for (const Remark& remark : home.remarks) {
       is_refused = is_refused || remark.weight == Remark::Weight::fails;
@@ -210,12 +243,18 @@ class ReturnJudge {
         }
       }
       if (step == 1) {
-        return worst;
+        break;
       }
       const std::size_t at = std::size_t(worst.first - stretch.data());
       begin = at - std::min(at, step);
       end = std::min(stretch.size(), at + step + 1);
     }
+    if (battery_ && worst.second >= 0) {
+      worst.first = &*std::max_element(
+          stretch.begin(), stretch.end(),
+          [](const Refused& a, const Refused& b) { return a.needed_wh < b.needed_wh; });
+    }
+    return worst;
   }
 
   void add_unjudged(const std::string& why) {
@@ -260,6 +299,15 @@ class ReturnJudge {
         finding.violation.message = remark.message;
       }
     }
+    if (is_too_much(refused.needed_wh)) {
+      finding.violation.constraint = "energy";
+      finding.violation.value = refused.needed_wh;
+      finding.violation.limit = battery_->usable_wh();
+      finding.violation.unit = "Wh";
+      finding.violation.message = "needs " + with_decimals(refused.needed_wh, 1) +
+                                  " Wh from take-off to its end, where " +
+                                  with_decimals(battery_->usable_wh(), 1) + " Wh may be used";
+    }
     const auto off = [](const Violation& v) { return std::abs(v.value - v.limit); };
     for (const FlownPart& part : home.parts) {
       for (const BandJudge::Found& found : judge_.violations(part)) {
@@ -291,12 +339,14 @@ class ReturnJudge {
   const World& world_;
   BandJudge judge_;
   ZoneNames names_;
+  std::optional<Battery> battery_;
   std::string prefix_;
   double finest_;
   ReturnsReport& report_;
   const FlownPart* part_ = nullptr;
   double begin_s_ = 0;
   double end_s_ = 0;
+  std::array<double, 2> latest_{0, 0};  ///< of the part, on the slowest flight
   Eigen::Vector2d from_{0, 0};
   Eigen::Vector2d to_{0, 0};
   std::vector<Refused> refused_;
@@ -333,8 +383,8 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
       } else if (options.world_during) {
         report.unjudged.emplace_back("zones with hours, and a flight without an end");
       }
-      ReturnJudge(plan, returns, request, autopilots.size() > 1 ? autopilot.name() + ": " : "",
-                  report)
+      ReturnJudge(plan, returns, request, options.battery,
+                  autopilots.size() > 1 ? autopilot.name() + ": " : "", report)
           .judge();
     }
   }
