@@ -249,6 +249,7 @@ class Refusals(TuneCase):
         self.assertFalse(os.path.exists(self.path("out")))
 
     def test_a_metric_that_no_run_has(self):
+        self.assertIn("did you mean 'length_m'?", self.refused(*X, metric="lenght_m", size=()))
         self.assertIn("the run has no value 'flight.length_m'",
                       self.refused(*X, metric="flight.length_m"))
 
