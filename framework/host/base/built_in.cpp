@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/base/built_in.hpp"
 
+#include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
 #include "altiplan/objective.hpp"
 #include "host/base/shapes.hpp"
@@ -22,13 +23,15 @@ class Length final : public Objective {
   Traits do_traits() const override { return {.place = false}; }
 };
 
-/// Without a factory: the objectives that it adds up are made by the host (mission/objective.cpp).
-PluginEntry weighted() {
+/// Without a factory: the objectives that it is made of are made by the host
+/// (mission/objective.cpp).
+template <class Params>
+PluginEntry made_by_host(const char* kind, const char* name, const char* sentence) {
   PluginEntry entry{};
-  entry.kind = detail::kKind<Objective>;
-  entry.name = "weighted";
-  entry.sentence = "Sum of several objectives, each times a weight";
-  entry.describe = &detail::describe<WeightedParams>;
+  entry.kind = kind;
+  entry.name = name;
+  entry.sentence = sentence;
+  entry.describe = &detail::describe<Params>;
   return entry;
 }
 }  // namespace
@@ -38,7 +41,10 @@ const std::vector<PluginEntry>& built_in_plugins() {
     std::vector<PluginEntry> all(built_in_environments().begin(), built_in_environments().end());
     all.push_back(detail::make_entry<Objective, Length, NoParams>(
         "length", "Length of the route, the default"));
-    all.push_back(weighted());
+    all.push_back(made_by_host<WeightedParams>(detail::kKind<Objective>, "weighted",
+                                               "Sum of several objectives, each times a weight"));
+    all.push_back(made_by_host<LimitParams>(detail::kKind<Constraint>, "limit",
+                                            "Limits what an objective adds up to along a route"));
     return all;
   }();
   return kAll;
@@ -51,6 +57,15 @@ void ObjectiveTerm::describe(Fields& f) {
 
 void WeightedParams::describe(Fields& f) {
   f("of", of).min_items(1).required().doc("the objectives, each with its weight");
+}
+
+void LimitedObjective::describe(Fields& f) {
+  f.plugin("objective", plugin, parameters).doc("an objective").required();
+}
+
+void LimitParams::describe(Fields& f) {
+  f("of", of).required().doc("the objective");
+  f("maximum", maximum).at_least(0).required().doc("greatest total of a route, in its unit");
 }
 
 void for_each_objective(const std::string& name, const Value& parameters, const std::string& path,

@@ -9,7 +9,8 @@
 
 namespace altiplan::host {
 
-/// Plugins of every kind that are built in: the shapes, and the objectives `length` and `weighted`.
+/// Plugins of every kind that are built in: the shapes, the objectives `length` and `weighted`, and
+/// the constraint `limit`.
 const std::vector<PluginEntry>& built_in_plugins();
 
 /// One of the objectives that `weighted` adds up: `{exposure: {…}, weight: 2}`.
@@ -22,6 +23,19 @@ struct ObjectiveTerm {
 
 struct WeightedParams {
   std::vector<ObjectiveTerm> of;
+  void describe(Fields& f);
+};
+
+/// The objective whose total `limit` limits.
+struct LimitedObjective {
+  std::string plugin;
+  Value parameters;
+  void describe(Fields& f);
+};
+
+struct LimitParams {
+  LimitedObjective of;
+  double maximum = 0;
   void describe(Fields& f);
 };
 

@@ -124,6 +124,14 @@ void for_each_objective(const Config& config, const VisitObjective& visit) {
       for_each_objective(file.objective->plugin, file.objective->parameters, prefix + "objective",
                          visit);
     }
+    for (std::size_t i = 0; i < file.constraints.size(); ++i) {
+      if (file.constraints[i].plugin == "limit") {
+        LimitParams limit;
+        bind(limit, &file.constraints[i].parameters);
+        for_each_objective(limit.of.plugin, limit.of.parameters,
+                           prefix + item("constraints", i) + ".limit.of", visit);
+      }
+    }
     for (std::size_t i = 0; i < file.metrics.size(); ++i) {
       for_each_objective(file.metrics[i].plugin, file.metrics[i].parameters,
                          prefix + item("metrics", i), visit);

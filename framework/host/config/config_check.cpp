@@ -176,6 +176,13 @@ void check_constraints(Checker& checker, const std::vector<ConstraintEntry>& ent
     checker.check_plugin("constraint", entry.plugin, entry.parameters,
                          place_of(tree.find("constraints")->items[i], entry.plugin),
                          path + "." + entry.plugin, path);
+    if (entry.plugin == "limit") {
+      LimitParams limit;
+      bind(limit, &entry.parameters);  // its problems are reported above
+      if (const Value* of = entry.parameters.find("of")) {
+        check_objective(checker, {limit.of.plugin, limit.of.parameters}, *of, path + ".limit.of");
+      }
+    }
   }
 }
 }  // namespace altiplan::host

@@ -59,11 +59,14 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
 
 using Calling = std::function<void(const std::string&)>;
 
-/// The parameters of a constraint; its largest distance from the ground less what lengths are off
-/// by, where routes are only judged.
+/// The parameters of a constraint; its largest distance from the ground, or total, less what lengths
+/// are off by, where routes are only judged.
 Value parameters_of(const ConstraintEntry& entry, double scale_error) {
   Value parameters = entry.parameters;
-  if (Value* limit = entry.plugin == "ground_distance" ? parameters.find("max_m") : nullptr) {
+  const char* key = entry.plugin == "ground_distance" ? "max_m"
+                    : entry.plugin == "limit"         ? "maximum"
+                                                      : "";
+  if (Value* limit = parameters.find(key)) {
     char text[40];
     std::snprintf(text, sizeof text, "%.17g", std::atof(limit->text.c_str()) / (1 + scale_error));
     limit->text = text;
@@ -72,8 +75,8 @@ Value parameters_of(const ConstraintEntry& entry, double scale_error) {
 }
 
 /// `scale_error`: of lengths, by which limits on them are tightened.
-std::vector<NamedConstraint> constraints_of(const Config& config, double scale_error,
-                                            const Calling& calling) {
+std::vector<NamedConstraint> constraints_of(const Config& config, const Site& site,
+                                            double scale_error, const Calling& calling) {
   std::vector<NamedConstraint> all;
   for (const auto* entries : {&config.scenario.constraints, &config.pipeline.constraints}) {
     for (const ConstraintEntry& entry : *entries) {
@@ -82,9 +85,11 @@ std::vector<NamedConstraint> constraints_of(const Config& config, double scale_e
       try {
         const Value parameters =
             scale_error > 0 ? parameters_of(entry, scale_error) : entry.parameters;
-        all.push_back(
-            {entry.plugin,
-             plugin(*config.registry, "constraint", entry.plugin).constraint(&parameters)});
+        const std::string key = "constraints." + entry.plugin;
+        all.push_back({entry.plugin, entry.plugin == "limit"
+                                         ? limit_of(config, parameters, site, key)
+                                         : plugin(*config.registry, "constraint", entry.plugin)
+                                               .constraint(&parameters)});
       } catch (const PluginError& error) {
         throw PluginError(who + " " + error.what(), error.reason());
       }
@@ -385,7 +390,7 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
     request.objective = objective_of(config, site);
   }
   mission.metrics = metrics_of(config, site, calling);
-  const std::vector<NamedConstraint> constraints = constraints_of(config, scale_error, calling);
+  const std::vector<NamedConstraint> constraints = constraints_of(config, site, scale_error, calling);
   mission.track_request = request;
   apply_constraints(request, constraints, AppliesTo::route);
   apply_constraints(mission.track_request, constraints, AppliesTo::track);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "altiplan/total_limit.hpp"
 #include "host/base/built_in.hpp"
 #include "host/config/config_check.hpp"
 
@@ -101,6 +102,18 @@ std::shared_ptr<const Objective> objective_of(const Config& config, const Site& 
   own.random = site.random.sub("objective");
   const std::string key = config.pipeline.objective ? "objective." : "scenario.objective.";
   return make_objective(config, entry->plugin, entry->parameters, own, key + entry->plugin);
+}
+
+std::shared_ptr<const Constraint> limit_of(const Config& config, const Value& parameters,
+                                           const Site& site, const std::string& key) {
+  LimitParams params;
+  bind(params, &parameters);
+  Site own = site;
+  own.random = site.random.sub(key);
+  return std::make_shared<TotalLimit>(
+      make_objective(config, params.of.plugin, params.of.parameters, own,
+                     key + ".of." + params.of.plugin),
+      params.maximum);
 }
 
 std::vector<Metric> metrics_of(const Config& config, const Site& site,

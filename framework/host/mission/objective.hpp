@@ -15,6 +15,10 @@ namespace altiplan::host {
 /// The objective in force, in the world of `site`; null: length. Throws as build_layer does.
 std::shared_ptr<const Objective> objective_of(const Config& config, const Site& site);
 
+/// The constraint `limit` of these parameters, whose key in the files is `key`. Throws likewise.
+std::shared_ptr<const Constraint> limit_of(const Config& config, const Value& parameters,
+                                           const Site& site, const std::string& key);
+
 /// An objective that routes are measured by, under its name in results.
 struct Metric {
   std::string name;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "altiplan/total_limit.hpp"
 #include "leg_judge.hpp"
 #include "moving.hpp"
 #include "words.hpp"
@@ -107,6 +108,19 @@ void check_ends(const Route& route, const Request& request, std::vector<Violatio
 }
 }  // namespace
 
+namespace {
+/// Of the legs themselves: chords of a turn are shorter than it.
+std::vector<Violation> total_violations(const NamedConstraint& named, const TotalLimit& limit,
+                                        const Route& route, const Request& request) {
+  std::vector<Violation> all =
+      answer_of(named, [&](const Constraint&) { return limit.violations_of(route, request); });
+  for (Violation& violation : all) {
+    violation.constraint = named.name;
+  }
+  return all;
+}
+}  // namespace
+
 CheckResult check(const Route& route, const Request& request) {
   CheckResult result;
   std::vector<Violation>& found = result.violations;
@@ -154,7 +168,10 @@ CheckResult check(const Route& route, const Request& request) {
   std::vector<std::size_t> leg_of;
   const Polyline points = route.is_straight() ? route.waypoints() : chords_of(route, leg_of);
   for (const NamedConstraint& named : request.constraints) {
-    for (Violation& violation : violations_of(named, points, request)) {
+    const auto* limit = dynamic_cast<const TotalLimit*>(named.constraint.get());
+    for (Violation& violation :
+         limit != nullptr ? total_violations(named, *limit, route, request)
+                          : violations_of(named, points, request)) {
       violation.at = leg_of.empty() ? violation.at : leg_of[violation.at];
       if (std::find(found.begin(), found.end(), violation) == found.end()) {  // of a leg
         found.push_back(std::move(violation));

@@ -12,7 +12,7 @@
 //   steps between them.
 // Deviations: moves are checked, not only cells; straight links join start and goal to the lattice;
 //   turn limits are first checked against the single parent of a cell, which is incomplete; closed
-//   nodes are never reopened; where cells or places decide (kit::CellSearch, step_search.hpp)
+//   nodes are never reopened; limits on totals are kept by labels (label_search.hpp); where cells or places decide (kit::CellSearch, step_search.hpp)
 //   lengths are integers (kit::StepCosts), and successors that another path reaches as cheaply are
 //   pruned.
 // Symbols: g cost-to-come, h heuristic, f = w_g g + w_h h.
@@ -25,6 +25,7 @@
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
+#include "label_search.hpp"
 #include "step_search.hpp"
 
 namespace {
@@ -71,10 +72,13 @@ class AStar final : public Planner {
                         });
   }
 
-  enum class By { cells, steps, one_parent, heading };
+  enum class By { cells, steps, one_parent, heading, labels };
 
   /// The fastest search that the problem allows.
   static By quickest(const SearchSettings& settings, const Request& request) {
+    if (!astar::resources_of(request).empty()) {
+      return By::labels;
+    }
     const bool is_length =
         settings.cost.length_alone() && settings.cost.length == 1 && !request.objective;
     if (is_length && settings.moves == MoveCheck::cells && kit::MoveRules::cells_decide(request)) {
@@ -96,6 +100,9 @@ class AStar final : public Planner {
     if (by == By::heading) {
       return by_heading(request, settings, best_cost);
     }
+    if (by == By::labels) {
+      return by_labels(request, settings, best_cost);
+    }
     std::optional<SearchResult> exact = by == By::cells   ? by_cells(request, settings)
                                         : by == By::steps ? by_steps(request, settings)
                                                           : std::nullopt;
@@ -112,6 +119,18 @@ class AStar final : public Planner {
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours, {});
     const auto memory = heading_memory_.take();
     return kit::HeadingSearch(request, settings, lattice, best_cost, *memory).run();
+  }
+
+  SearchResult by_labels(const Request& request, const SearchSettings& settings,
+                         double best_cost) const {
+    constexpr std::size_t kBytes = sizeof(std::uint32_t);
+    const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
+                               {params_.max_bytes(), kBytes});
+    if (auto refused = kit::beyond_budget(lattice, kBytes, request.budget)) {
+      return {*std::move(refused)};
+    }
+    kit::OpenList open;
+    return astar::LabelSearch(request, settings, lattice, best_cost, open).run();
   }
 
   SearchResult by_one_parent(const Request& request, const SearchSettings& settings,

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "altiplan/measures.hpp"
+#include "altiplan/objective.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/request.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct Params {
+  std::optional<double> above_m;
+
+  void describe(Fields& f) {
+    f("above_m", above_m)
+        .unit("m")
+        .doc("only time above this height counts, above sea level; default: all");
+  }
+};
+
+/// Seconds of flight at the vehicle's speeds in the wind.
+class FlightTime final : public Objective {
+ public:
+  FlightTime(const Params& params, const Site&) : params_(params) {}
+
+ private:
+  double do_cost(const Leg& leg, double, const Request& request) const override {
+    if (is_by_airspeed(request)) {
+      // Along a turn the rate of climb is constant, along a straight leg in each layer of wind.
+      return leg.turns() ? leg_duration(leg, request) * share_above(leg.from.z(), leg.to.z())
+                         : above(leg.from, leg.to, request);
+    }
+    const std::vector<Vec3> points =
+        leg.turns() ? leg.chords(kTolerance) : std::vector<Vec3>{leg.from, leg.to};
+    double sum = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      sum += above(points[i - 1], points[i], request);
+    }
+    return sum;
+  }
+
+  /// As fast as ever possible: straight, or down to the height where no time counts and up again.
+  double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
+    const Vec3 way = to - from;
+    if (is_by_airspeed(request)) {  // which is horizontal: going down takes no time
+      double wind = 0;
+      for (const Wind::Layer& layer : request.wind.layers) {
+        wind = std::max(wind, layer.velocity.norm());
+      }
+      return params_.above_m ? 0 : way.head<2>().norm() / (request.air_speed() + wind);
+    }
+    const Vehicle& vehicle = request.vehicle;
+    double fastest = vehicle.speed_mps;
+    for (const SpeedNear& near : vehicle.speed_near) {
+      fastest = std::max(fastest, near.speed_mps);
+    }
+    const double over = params_.above_m ? std::max(0.0, from.z() - *params_.above_m) +
+                                              std::max(0.0, to.z() - *params_.above_m)
+                                        : kInfinity;
+    return std::min(way.norm(), over) / fastest;
+  }
+
+  std::string do_unit() const override { return "s"; }
+  /// Near obstacles, and in layers of wind, the speed depends on the place.
+  Traits do_traits() const override { return {.place = true, .heading = true}; }
+
+  /// As leg_duration has it.
+  static bool is_by_airspeed(const Request& request) {
+    return request.vehicle.wing || !request.wind.is_calm();
+  }
+
+  /// Seconds of a straight leg, or of its part above the height.
+  double above(const Vec3& a, const Vec3& b, const Request& request) const {
+    const double share = share_above(a.z(), b.z());
+    if (share == 0) {
+      return 0;
+    }
+    const Vec3 crossing = a.z() > b.z() ? a + share * (b - a) : b + share * (a - b);
+    const Leg part = share == 1          ? Leg::straight(a, b)
+                     : a.z() > b.z()     ? Leg::straight(a, crossing)
+                                         : Leg::straight(crossing, b);
+    return leg_duration(part, request);
+  }
+
+  /// Of a change of height at a constant rate, the part that counts.
+  double share_above(double from, double to) const {
+    const auto [low, high] = std::minmax(from, to);
+    if (!params_.above_m) {
+      return 1;
+    }
+    if (high <= *params_.above_m) {
+      return 0;
+    }
+    return low >= *params_.above_m ? 1 : (high - *params_.above_m) / (high - low);
+  }
+
+  static constexpr double kTolerance = 1e-4;  // of chords, metres
+  Params params_;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Objective, "time", FlightTime, Params,
+                "Time of flight at the vehicle's speeds in the wind, or of its part above a height")
