@@ -8,8 +8,7 @@ namespace altiplan::cli {
 
 void print_metrics(std::FILE* to, const char* of, const host::MetricValues& metrics) {
   for (const auto& [name, value] : metrics) {
-    std::fprintf(to, "  %s of the %s: %s\n", name.c_str(), of,
-                 host::with_digits(value, 6).c_str());
+    std::fprintf(to, "  %s of the %s: %s\n", name.c_str(), of, host::with_digits(value, 6).c_str());
   }
 }
 

@@ -121,15 +121,21 @@ void check_objective(Checker& checker, const ObjectiveEntry& entry, const Value&
 
 namespace {
 /// Values that every run, step or flight has already (docs/reference/studies.md).
-constexpr const char* kValuesOfRuns[] = {
-    "length_m",          "waypoints",          "max_turn_deg",       "max_climb_deg",
-    "min_radius_m",      "min_clearance_m",    "smoothness_rad",     "min_ground_clearance_m",
-    "duration_s",        "plan_time_s",        "smooth_time_s",      "expanded",
-    "setup_time_s",      "solved",             "wall_time_s",        "cpu_time_s",
-    "peak_memory_mb",    "time_s",             "accepted",           "stands",
-    "budget_hit",        "collisions",         "min_separation_m",   "reached",
-    "cross_track_max_m", "cross_track_p999_m", "height_error_max_m", "replans",
-    "replan_time_s",     "handovers"};
+constexpr const char* kValuesOfRuns[] = {"length_m",           "waypoints",
+                                         "max_turn_deg",       "max_climb_deg",
+                                         "min_radius_m",       "min_clearance_m",
+                                         "smoothness_rad",     "min_ground_clearance_m",
+                                         "duration_s",         "plan_time_s",
+                                         "smooth_time_s",      "expanded",
+                                         "setup_time_s",       "solved",
+                                         "wall_time_s",        "cpu_time_s",
+                                         "peak_memory_mb",     "time_s",
+                                         "accepted",           "stands",
+                                         "budget_hit",         "collisions",
+                                         "min_separation_m",   "reached",
+                                         "cross_track_max_m",  "cross_track_p999_m",
+                                         "height_error_max_m", "replans",
+                                         "replan_time_s",      "handovers"};
 
 /// Why a metric cannot have this name; "" if it can.
 std::string name_problem(const std::string& name, const Ids& names) {

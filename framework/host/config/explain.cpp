@@ -120,10 +120,10 @@ std::vector<Explained> explain(const Config& config) {
                  item(path, i) + "." + entry.plugin);
     }
   }
-  for_each_objective(
-      config, [&](const std::string& name, const Value& parameters, const std::string& key) {
-        add_plugin(all, config, "objective", name, parameters, key);
-      });
+  for_each_objective(config,
+                     [&](const std::string& name, const Value& parameters, const std::string& key) {
+                       add_plugin(all, config, "objective", name, parameters, key);
+                     });
   add_file<PipelineFile>(all, config.pipeline_tree, "");
   for (std::size_t i = 0; i < config.steps.size(); ++i) {
     const StepEntry& step = config.steps[i];

@@ -21,7 +21,9 @@ void ObjectiveEntry::describe(Fields& f) {
 
 void MetricEntry::describe(Fields& f) {
   f("id", id).doc("name of the value in results; default: the objective's");
-  f.plugin("objective", plugin, parameters).doc("an objective that routes are measured by").required();
+  f.plugin("objective", plugin, parameters)
+      .doc("an objective that routes are measured by")
+      .required();
 }
 
 void PointEntry::describe(Fields& f) { f.point(point).required(); }

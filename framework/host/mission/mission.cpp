@@ -59,8 +59,8 @@ std::vector<MovingObstacle> moving_of(const Config& config, const Site& site, co
 
 using Calling = std::function<void(const std::string&)>;
 
-/// The parameters of a constraint; its largest distance from the ground, or total, less what lengths
-/// are off by, where routes are only judged.
+/// The parameters of a constraint; its largest distance from the ground, or total, less what
+/// lengths are off by, where routes are only judged.
 Value parameters_of(const ConstraintEntry& entry, double scale_error) {
   Value parameters = entry.parameters;
   const char* key = entry.plugin == "ground_distance" ? "max_m"
@@ -86,10 +86,11 @@ std::vector<NamedConstraint> constraints_of(const Config& config, const Site& si
         const Value parameters =
             scale_error > 0 ? parameters_of(entry, scale_error) : entry.parameters;
         const std::string key = "constraints." + entry.plugin;
-        all.push_back({entry.plugin, entry.plugin == "limit"
-                                         ? limit_of(config, parameters, site, key)
-                                         : plugin(*config.registry, "constraint", entry.plugin)
-                                               .constraint(&parameters)});
+        all.push_back(
+            {entry.plugin,
+             entry.plugin == "limit"
+                 ? limit_of(config, parameters, site, key)
+                 : plugin(*config.registry, "constraint", entry.plugin).constraint(&parameters)});
       } catch (const PluginError& error) {
         throw PluginError(who + " " + error.what(), error.reason());
       }
@@ -390,7 +391,8 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
     request.objective = objective_of(config, site);
   }
   mission.metrics = metrics_of(config, site, calling);
-  const std::vector<NamedConstraint> constraints = constraints_of(config, site, scale_error, calling);
+  const std::vector<NamedConstraint> constraints =
+      constraints_of(config, site, scale_error, calling);
   mission.track_request = request;
   apply_constraints(request, constraints, AppliesTo::route);
   apply_constraints(mission.track_request, constraints, AppliesTo::track);

@@ -110,10 +110,9 @@ std::shared_ptr<const Constraint> limit_of(const Config& config, const Value& pa
   bind(params, &parameters);
   Site own = site;
   own.random = site.random.sub(key);
-  return std::make_shared<TotalLimit>(
-      make_objective(config, params.of.plugin, params.of.parameters, own,
-                     key + ".of." + params.of.plugin),
-      params.maximum);
+  return std::make_shared<TotalLimit>(make_objective(config, params.of.plugin, params.of.parameters,
+                                                     own, key + ".of." + params.of.plugin),
+                                      params.maximum);
 }
 
 std::vector<Metric> metrics_of(const Config& config, const Site& site,
@@ -124,9 +123,9 @@ std::vector<Metric> metrics_of(const Config& config, const Site& site,
     for (std::size_t i = 0; i < entries.size(); ++i) {
       calling("the metric '" + entries[i].id + "': its constructor");
       own.random = site.random.sub("metric:" + entries[i].id);
-      metrics.push_back({entries[i].id,
-                         make_objective(config, entries[i].plugin, entries[i].parameters, own,
-                                        item(list, i) + "." + entries[i].plugin)});
+      metrics.push_back(
+          {entries[i].id, make_objective(config, entries[i].plugin, entries[i].parameters, own,
+                                         item(list, i) + "." + entries[i].plugin)});
     }
   };
   add(config.scenario.metrics, "scenario.metrics");

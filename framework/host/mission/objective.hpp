@@ -28,7 +28,8 @@ struct Metric {
 /// Costs by such objectives, by name.
 using MetricValues = std::vector<std::pair<std::string, double>>;
 
-/// Those of the scenario, then those of the pipeline; `calling` as of build_mission. Throws as build_layer does.
+/// Those of the scenario, then those of the pipeline; `calling` as of build_mission. Throws as
+/// build_layer does.
 std::vector<Metric> metrics_of(const Config& config, const Site& site,
                                const std::function<void(const std::string&)>& calling);
 

@@ -169,9 +169,8 @@ CheckResult check(const Route& route, const Request& request) {
   const Polyline points = route.is_straight() ? route.waypoints() : chords_of(route, leg_of);
   for (const NamedConstraint& named : request.constraints) {
     const auto* limit = dynamic_cast<const TotalLimit*>(named.constraint.get());
-    for (Violation& violation :
-         limit != nullptr ? total_violations(named, *limit, route, request)
-                          : violations_of(named, points, request)) {
+    for (Violation& violation : limit != nullptr ? total_violations(named, *limit, route, request)
+                                                 : violations_of(named, points, request)) {
       violation.at = leg_of.empty() ? violation.at : leg_of[violation.at];
       if (std::find(found.begin(), found.end(), violation) == found.end()) {  // of a leg
         found.push_back(std::move(violation));

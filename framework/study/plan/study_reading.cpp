@@ -151,10 +151,7 @@ class StudyMetrics {
  public:
   StudyMetrics(const StudyPlan& plan, const Value& tree, StudyVariants& variants,
                const std::vector<fs::path>& plugin_path)
-      : file_(plan.file),
-        tree_(tree),
-        variants_(variants),
-        plugin_path_(plugin_path) {}
+      : file_(plan.file), tree_(tree), variants_(variants), plugin_path_(plugin_path) {}
 
   void give(Variant& variant) const {
     const Value tree = tree_of(variant, host::FileOfKey::pipeline);

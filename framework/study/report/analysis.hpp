@@ -88,14 +88,14 @@ struct MetricAnalysis {
 /// The pipelines in two metrics of one's own: medians over the pairs that all of them solved.
 struct Trade {
   std::array<std::string, 2> metrics;
-  std::array<bool, 2> is_negated{};     ///< more is better: negated in places
-  std::vector<std::size_t> pipelines;   ///< those that solved any run with both values
-  std::vector<Place> places;            ///< one per entry of pipelines; less is better
-  std::size_t pairs = 0;                ///< that all of them solved
-  std::vector<std::size_t> front;       ///< indices into places
-  Place reference{};                    ///< worst of both values, and a tenth of the range more
+  std::array<bool, 2> is_negated{};    ///< more is better: negated in places
+  std::vector<std::size_t> pipelines;  ///< those that solved any run with both values
+  std::vector<Place> places;           ///< one per entry of pipelines; less is better
+  std::size_t pairs = 0;               ///< that all of them solved
+  std::vector<std::size_t> front;      ///< indices into places
+  Place reference{};                   ///< worst of both values, and a tenth of the range more
   double hypervolume = 0;
-  double share = 0;                     ///< of the rectangle from the best of both values
+  double share = 0;  ///< of the rectangle from the best of both values
 };
 
 struct Analysis {

@@ -42,8 +42,8 @@ Figure pareto_figure(const StudyData& data, const Trade& trade) {
   draw_bottom(canvas, along, kParetoTop, kParetoBottom,
               axis_label(metric_label(trade.metrics[0]), along));
   // The border of what some pipeline is at least as good as: steps from point to point.
-  std::string d = "M" + pixels(x(trade.places[trade.front.front()])) + " " +
-                  pixels(y(trade.reference));
+  std::string d =
+      "M" + pixels(x(trade.places[trade.front.front()])) + " " + pixels(y(trade.reference));
   for (const std::size_t at : trade.front) {
     d += "H" + pixels(x(trade.places[at])) + "V" + pixels(y(trade.places[at]));
   }
@@ -70,9 +70,9 @@ Figure pareto_figure(const StudyData& data, const Trade& trade) {
               " (scenario, repetition) that all pipelines shown solved" +
               (left_out > 0 ? "; " + counted(left_out, "pipeline") + " solved none" : "") +
               ". Hypervolume of the front " + readable(trade.hypervolume) +
-              (trade.share == trade.share ? ", " + percent(trade.share) +
-                                                " of the rectangle from the best of both values"
-                                          : std::string()) +
+              (trade.share == trade.share
+                   ? ", " + percent(trade.share) + " of the rectangle from the best of both values"
+                   : std::string()) +
               ", up to the reference point " + reference_text(trade) +
               ": the worst of both values, and a tenth of their range more.",
           kFigureWidth,

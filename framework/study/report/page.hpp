@@ -41,7 +41,7 @@ struct Content {
   std::vector<FailureGroup> failures;
   std::vector<Figure> success_figures;
   std::vector<std::vector<Figure>> metric_figures;  ///< one list per metric of the analysis
-  std::vector<Figure> trade_figures;  ///< one per trade of the analysis
+  std::vector<Figure> trade_figures;                ///< one per trade of the analysis
   std::vector<Figure> effort_figures;
   std::vector<Convergence> convergence;
   std::vector<Figure> convergence_figures;  ///< of the first kMaxConvergence

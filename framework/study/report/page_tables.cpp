@@ -229,8 +229,7 @@ Table pareto_table(const Content& content, const Trade& trade) {
                   ": medians over " + counted(trade.pairs, "pair") +
                   ", whether no pipeline is better in both, and the hypervolume lost without it",
               columns({"pipeline", "#" + metric_label(trade.metrics[0]),
-                       "#" + metric_label(trade.metrics[1]), "non-dominated",
-                       "#hypervolume lost"}),
+                       "#" + metric_label(trade.metrics[1]), "non-dominated", "#hypervolume lost"}),
               {}};
   for (std::size_t i = 0; i < trade.pipelines.size(); ++i) {
     std::vector<Place> others = trade.places;

@@ -79,9 +79,9 @@ class FlightTime final : public Objective {
       return 0;
     }
     const Vec3 crossing = a.z() > b.z() ? a + share * (b - a) : b + share * (a - b);
-    const Leg part = share == 1          ? Leg::straight(a, b)
-                     : a.z() > b.z()     ? Leg::straight(a, crossing)
-                                         : Leg::straight(crossing, b);
+    const Leg part = share == 1      ? Leg::straight(a, b)
+                     : a.z() > b.z() ? Leg::straight(a, crossing)
+                                     : Leg::straight(crossing, b);
     return leg_duration(part, request);
   }
 

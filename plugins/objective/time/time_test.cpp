@@ -68,9 +68,7 @@ constexpr Key kCells{7, 5, 4};
 Vec3 place(const Key& k) {
   return {kCell * (k[0] + 0.5), kCell * (k[1] + 0.5), kCell * (k[2] + 0.5)};
 }
-Key key(const Vec3& p) {
-  return {int(p.x() / kCell), int(p.y() / kCell), int(p.z() / kCell)};
-}
+Key key(const Vec3& p) { return {int(p.x() / kCell), int(p.y() / kCell), int(p.z() / kCell)}; }
 
 /// Cost and total of a path.
 using Ends = std::pair<double, double>;
@@ -131,9 +129,9 @@ Request random_request(SplitMix64& random, int number) {
     balls.emplace_back(Sphere{{70 * random.uniform(), 50 * random.uniform(), 25 * random.uniform()},
                               5 + 12 * random.uniform()});
   }
-  Request request = testing::request_in(testing::world_of(std::move(balls)),
-                                        {centre(0), centre(1), centre(2)},
-                                        {centre(0), centre(1), centre(2)}, {{0, 0, 0}, {70, 50, 40}});
+  Request request =
+      testing::request_in(testing::world_of(std::move(balls)), {centre(0), centre(1), centre(2)},
+                          {centre(0), centre(1), centre(2)}, {{0, 0, 0}, {70, 50, 40}});
   request.vehicle.speed_mps = 5;
   const std::shared_ptr<const Objective> all[] = {nullptr, make_objective("altitude"),
                                                   make_objective("time")};

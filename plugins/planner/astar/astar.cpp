@@ -12,9 +12,9 @@
 //   steps between them.
 // Deviations: moves are checked, not only cells; straight links join start and goal to the lattice;
 //   turn limits are first checked against the single parent of a cell, which is incomplete; closed
-//   nodes are never reopened; limits on totals are kept by labels (label_search.hpp); where cells or places decide (kit::CellSearch, step_search.hpp)
-//   lengths are integers (kit::StepCosts), and successors that another path reaches as cheaply are
-//   pruned.
+//   nodes are never reopened; limits on totals are kept by labels (label_search.hpp); where cells
+//   or places decide (kit::CellSearch, step_search.hpp) lengths are integers (kit::StepCosts), and
+//   successors that another path reaches as cheaply are pruned.
 // Symbols: g cost-to-come, h heuristic, f = w_g g + w_h h.
 #include <memory>
 #include <utility>

@@ -38,9 +38,9 @@ inline std::vector<Resource> resources_of(const Request& request) {
 struct Label {
   double g = 0;
   std::uint32_t cell = 0;
-  std::uint32_t from = 0;      ///< the label before it
-  std::uint32_t next = 0;      ///< another label of the cell
-  std::uint8_t in = 0;         ///< the step into the cell; kHere: linked to the start
+  std::uint32_t from = 0;  ///< the label before it
+  std::uint32_t next = 0;  ///< another label of the cell
+  std::uint8_t in = 0;     ///< the step into the cell; kHere: linked to the start
   bool is_dominated = false;
 };
 
@@ -82,9 +82,8 @@ class LabelSearch : kit::GoalSearch {
     }
     progress_.memory_full = memory_full();
     kit::SearchResult none = without(status, true);
-    none.result.message += pruned_ > 0 ? "; a limit on a total pruned " + std::to_string(pruned_) +
-                                             " paths"
-                                       : "";
+    none.result.message +=
+        pruned_ > 0 ? "; a limit on a total pruned " + std::to_string(pruned_) + " paths" : "";
     return none;
   }
 
@@ -117,9 +116,9 @@ class LabelSearch : kit::GoalSearch {
                          : length == 0 ? 0
                                        : of->cost(Leg::straight(a, b), 0, request_);
       const double tolerance = request_.goal.tolerance_m;
-      const double rest = of == nullptr     ? std::max(0.0, (goal_ - b).norm() - tolerance)
-                          : tolerance > 0   ? 0
-                                            : of->bound(b, goal_, request_);
+      const double rest = of == nullptr   ? std::max(0.0, (goal_ - b).norm() - tolerance)
+                          : tolerance > 0 ? 0
+                                          : of->bound(b, goal_, request_);
       totals_[k] = before[k] + leg;
       if (costs_more(totals_[k] + rest, resources_[k].maximum)) {
         ++pruned_;
@@ -178,9 +177,9 @@ class LabelSearch : kit::GoalSearch {
     const Cell c = lattice_.cell(label.cell);
     const Vec3 here = label.in == kit::kHere && at_start_ ? start_ : lattice_.position(c);
     const std::optional<Approach> from = before(label.in, here);
-    const std::vector<double> spent(spent_.begin() + std::ptrdiff_t(index * resources_.size()),
-                                    spent_.begin() +
-                                        std::ptrdiff_t((index + 1) * resources_.size()));
+    const std::vector<double> spent(
+        spent_.begin() + std::ptrdiff_t(index * resources_.size()),
+        spent_.begin() + std::ptrdiff_t((index + 1) * resources_.size()));
     ++progress_.expanded;
     remember_nearest(here);
     if (request_.trace != nullptr) {
@@ -208,8 +207,7 @@ class LabelSearch : kit::GoalSearch {
       const double g = label.g + step_cost(d, here, there);
       const auto next = std::uint32_t(label.cell + lattice_.stride(d));
       const auto in = std::uint8_t(rules_.step_after(label.in, d));
-      if (!add_up(spent.data(), here, there, lattice_.step_length(d)) ||
-          is_needless(next, in, g) ||
+      if (!add_up(spent.data(), here, there, lattice_.step_length(d)) || is_needless(next, in, g) ||
           (judged_whole && !rules_.any_leg_ok(from, here, there))) {
         continue;
       }
@@ -247,7 +245,7 @@ class LabelSearch : kit::GoalSearch {
   }
 
   std::vector<Resource> resources_;
-  bool by_step_;  ///< constraints depend on two legs
+  bool by_step_;                         ///< constraints depend on two legs
   std::vector<std::uint32_t> first_of_;  ///< label of each cell
   std::vector<Label> labels_;
   std::vector<double> spent_;   ///< totals of each label
