@@ -199,7 +199,9 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   const bool has_landing =
       std::any_of(plan_.commands.begin(), plan_.commands.end(), [](const auto& command) {
         const Task task = formats::command_task(command.number).task;
-        return task == Task::landing_start || task == Task::land || task == Task::vtol_land;
+        constexpr int kReturnPathStart = 188;
+        return task == Task::landing_start || task == Task::land || task == Task::vtol_land ||
+               command.number == kReturnPathStart;
       });
   const double type = is_px4() ? parameter("RTL_TYPE") : 0;
   const bool goes_to_landing =
