@@ -387,8 +387,8 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
 Finding moving_not_judged() {
   Finding finding;
   finding.violation.constraint = "moving";
-  finding.violation.message =
-      "how near the mission comes to the scenario's moving obstacles is not judged";
+  finding.violation.message = "how near it comes to the scenario's moving obstacles is not judged";
+  finding.items = {"the mission"};
   finding.is_unjudged = true;
   return finding;
 }
