@@ -31,7 +31,7 @@ FlightEvent adding_mover(Shape shape, const Vec3& velocity, double since_s) {
 }
 
 /// A wall that is moved, from 8 km aside, to where the vehicle is.
-FlightEvent moving_in(Scene& scene, const Vec3& place) {
+FlightEvent moving_in(FlightScene& scene, const Vec3& place) {
   const Vec3 away = place + Vec3(0, 8000, 0);
   scene.hide(layer("pop_up", BoxShape{{away - Vec3(100, 10, 300), away + Vec3(100, 30, 300)}}));
   FlightEvent event;
@@ -72,8 +72,8 @@ void expect_met_at_once(const FlightSetup& setup, const Vec3& place, double dept
 }
 
 /// Each event over the vehicle with how deep it then lies inside.
-void expect_all_met(const std::function<void(Scene&)>& commanded) {
-  Scene undisturbed;
+void expect_all_met(const std::function<void(FlightScene&)>& commanded) {
+  FlightScene undisturbed;
   commanded(undisturbed);
   const FlightResult before = fly(undisturbed.setup);
   const auto [time_s, place] = *std::find_if(before.track.begin(), before.track.end(),
@@ -92,12 +92,12 @@ void expect_all_met(const std::function<void(Scene&)>& commanded) {
        20}};
   for (std::size_t n = 0; n < cases.size(); ++n) {
     SCOPED_TRACE(n);
-    Scene scene;
+    FlightScene scene;
     commanded(scene);
     scene.setup.events = {cases[n].first};
     expect_met_at_once(scene.setup, place, cases[n].second);
   }
-  Scene scene;
+  FlightScene scene;
   commanded(scene);
   scene.setup.events = {moving_in(scene, place)};
   expect_met_at_once(scene.setup, place, 10);
@@ -106,7 +106,7 @@ void expect_all_met(const std::function<void(Scene&)>& commanded) {
 TEST(FlightContact, AWallThatTheBodyAloneTouches) {
   for (const double gap : {14.0, 16.0}) {
     SCOPED_TRACE(gap);
-    Scene scene;
+    FlightScene scene;
     scene.follow_alone();
     scene.setup.request.vehicle.body = std::make_shared<Body>(
         Body{{box_part({10, 30, 2}, {0, 0, 0})}});  // 30 m wide: 15 m to each side
@@ -120,18 +120,18 @@ TEST(FlightContact, AWallThatTheBodyAloneTouches) {
 }
 
 TEST(FlightContact, APopUpOverTheVehicleThatFollowsTheRoute) {
-  expect_all_met([](Scene& scene) { scene.follow_alone(); });
+  expect_all_met([](FlightScene& scene) { scene.follow_alone(); });
 }
 
 TEST(FlightContact, APopUpOverTheVehicleThatAPilotMayCommand) {
-  expect_all_met([](Scene&) {});
+  expect_all_met([](FlightScene&) {});
 }
 
 TEST(FlightContact, APopUpOverTheVehicleThatAPilotCommands) {
   for (const char* pilot : {"apf", "velocity_field"}) {
     SCOPED_TRACE(pilot);
     const auto commands = testing::make_local_planner(pilot);
-    expect_all_met([&](Scene& scene) {
+    expect_all_met([&](FlightScene& scene) {
       scene.setup.pilot = commands.get();
       scene.setup.pilot_name = pilot;
       scene.setup.always = true;
@@ -141,7 +141,7 @@ TEST(FlightContact, APopUpOverTheVehicleThatAPilotCommands) {
 
 TEST(FlightContact, TakeOffInsideSomething) {
   for (const bool moves : {false, true}) {
-    Scene scene;
+    FlightScene scene;
     if (moves) {
       scene.hide_moving({2000, 15010, 500}, 0, {0, 200, 0}, 40);
     } else {
@@ -157,7 +157,7 @@ TEST(FlightContact, TakeOffInsideSomething) {
 }
 
 TEST(FlightContact, TheSeparationIsTheDepthOfTheTrack) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("wall", BoxShape{{{17003, 14000, 0}, {17103, 16000, 4000}}}));
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
@@ -170,7 +170,7 @@ TEST(FlightContact, TheSeparationIsTheDepthOfTheTrack) {
 
 TEST(FlightContact, TheDepthInAMoverIsThatOfTheRelativeMotion) {
   // Meets the vehicle from the side, 12 m off, in the middle of a step.
-  Scene scene;
+  FlightScene scene;
   scene.hide_moving({8015, 15000, 512}, kAt + 0.5, {30, 400, 0}, 40);
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
@@ -180,7 +180,7 @@ TEST(FlightContact, TheDepthInAMoverIsThatOfTheRelativeMotion) {
 }
 
 TEST(FlightContact, WhatComesDownOnTheGoalIsMetThere) {
-  Scene scene;
+  FlightScene scene;
   scene.follow_alone();
   const double arrives = 26000.0 / 30;
   scene.setup.events = {adding(Sphere{scene.setup.request.goal.position, 40})};
@@ -196,7 +196,7 @@ TEST(FlightContact, WhatComesDownOnTheGoalIsMetThere) {
 
 TEST(FlightContact, APopUpIsMetAtTheNextPointOfTheTrack) {
   // The route has a point every 0.2 s; the step is 1 s.
-  Scene scene;
+  FlightScene scene;
   scene.follow_alone();
   scene.setup.route.edit().clear();
   for (int k = 0; k <= 26000 / 6; ++k) {
@@ -230,7 +230,7 @@ class HoveringPlanner final : public LocalPlanner {
 };
 
 TEST(FlightContact, AMoverMeetsAVehicleThatHovers) {
-  Scene scene;
+  FlightScene scene;
   const HoveringPlanner hovering;
   scene.setup.pilot = &hovering;
   scene.setup.always = true;

@@ -82,14 +82,14 @@ FlightEvent closing() {
   return event;
 }
 
-void make_known(Scene& scene, Layer known) {
+void make_known(FlightScene& scene, Layer known) {
   scene.setup.truth = scene.setup.truth.with(known);
   scene.setup.request.world =
       std::make_shared<const World>(scene.setup.request.world->with(std::move(known)));
 }
 
 TEST(FlightNews, ChangedCellsAreKnownWithinSensingOfTheirBox) {
-  Scene scene;
+  FlightScene scene;
   make_known(scene, blocks(false));
   scene.setup.events = {closing()};
   Detour detour({{20000, 14000, 500}});
@@ -107,7 +107,7 @@ TEST(FlightNews, ChangedCellsAreKnownWithinSensingOfTheirBox) {
 }
 
 TEST(FlightNews, ThePilotFliesAroundChangedCells) {
-  Scene scene;
+  FlightScene scene;
   make_known(scene, blocks(false));
   scene.setup.events = {closing()};
   expect_flown(fly(scene.setup), 2);
@@ -116,7 +116,7 @@ TEST(FlightNews, ThePilotFliesAroundChangedCells) {
 }
 
 TEST(FlightNews, CellsChangedTwiceAreToldInOneBox) {
-  Scene scene;
+  FlightScene scene;
   make_known(scene, blocks(false));
   FlightEvent more = closing();
   more.at_s = 60;
@@ -132,8 +132,8 @@ TEST(FlightNews, CellsChangedTwiceAreToldInOneBox) {
 }
 
 /// Hovers on the way; known from the start, gone after 100 s, when the vehicle is 10 km away.
-Scene with_hoverer(bool told) {
-  Scene scene;
+FlightScene with_hoverer(bool told) {
+  FlightScene scene;
   MovingObstacle hoverer{"hoverer", Sphere{{15000, 15000, 500}, 300}, {0, 0, 0}, 0, true};
   scene.setup.truth = scene.setup.truth.with_moving({hoverer});
   scene.setup.request.world =
@@ -148,7 +148,7 @@ Scene with_hoverer(bool told) {
 }
 
 TEST(FlightNews, AMovingObstacleIsGoneOnlyWhenThatIsSensed) {
-  Scene scene = with_hoverer(false);
+  FlightScene scene = with_hoverer(false);
   scene.setup.request.vehicle.sensing_m = 1000;  // less than the pilot's reach: it takes over first
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 2);
@@ -158,17 +158,17 @@ TEST(FlightNews, AMovingObstacleIsGoneOnlyWhenThatIsSensed) {
 }
 
 TEST(FlightNews, AMovingObstacleToldToBeGoneIsNotFlownAround) {
-  Scene told = with_hoverer(true);
+  FlightScene told = with_hoverer(true);
   told.setup.request.vehicle.sensing_m = 1000;
   EXPECT_TRUE(fly(told.setup).handovers.empty());
-  Scene stays = with_hoverer(true);
+  FlightScene stays = with_hoverer(true);
   stays.setup.events.clear();
   expect_flown(fly(stays.setup), 2);
 }
 
 TEST(FlightNews, TheMoveOfAMovingObstacleIsKnownWhenSensed) {
   for (const bool told : {false, true}) {
-    Scene scene = with_hoverer(told);
+    FlightScene scene = with_hoverer(told);
     scene.setup.request.vehicle.sensing_m = 1000;
     scene.setup.events[0].kind = FlightEvent::Kind::move;
     scene.setup.events[0].vector = {0, 8000, 0};
@@ -179,7 +179,7 @@ TEST(FlightNews, TheMoveOfAMovingObstacleIsKnownWhenSensed) {
 }
 
 TEST(FlightNews, ReplannedRoutesAreSmoothed) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   scene.follow_alone();
   Detour detour({{15000, 13000, 500}, {16000, 12990, 500}, {17000, 13000, 500}});
@@ -200,7 +200,7 @@ TEST(FlightNews, ReplannedRoutesAreSmoothed) {
 }
 
 TEST(FlightNews, AFailingPilotKeepsTheTrack) {
-  Scene scene;
+  FlightScene scene;
   const FailingPlanner failing(5);
   scene.setup.pilot = &failing;
   scene.setup.pilot_name = "failing";
@@ -219,7 +219,7 @@ TEST(FlightNews, AFailingPilotKeepsTheTrack) {
 }
 
 TEST(FlightNews, AnEventThatFailsKeepsTheTrack) {
-  Scene scene;
+  FlightScene scene;
   FlightEvent gone;
   gone.kind = FlightEvent::Kind::remove;
   gone.id = "nobody";

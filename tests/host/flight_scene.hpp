@@ -16,11 +16,11 @@ inline Layer layer(const std::string& id, Shape shape, bool known = true) {
 inline Cylinder post(double x, double y, double radius) { return {x, y, radius}; }
 
 /// East along y = 15 km, 26 km at 30 m/s and at 500 m, one post beside the way.
-struct Scene {
+struct FlightScene {
   FlightSetup setup;
   std::unique_ptr<LocalPlanner> apf = testing::make_local_planner("apf");
 
-  Scene() {
+  FlightScene() {
     World known = World().with(layer("beside", post(9000, 13000, 500)));
     setup.truth = known;
     setup.request = testing::request_in(std::move(known), {2000, 15000, 500}, {28000, 15000, 500},

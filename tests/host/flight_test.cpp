@@ -10,7 +10,7 @@ namespace altiplan::host::flight_test {
 namespace {
 
 TEST(Flight, WithoutTheUnknownFollowsTheRoute) {
-  Scene scene;
+  FlightScene scene;
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 0);
   EXPECT_TRUE(result.handovers.empty());
@@ -26,7 +26,7 @@ TEST(Flight, WithoutTheUnknownFollowsTheRoute) {
 }
 
 TEST(Flight, PilotFliesAroundWhatWasNotKnownAndHandsBack) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 2);
@@ -38,7 +38,7 @@ TEST(Flight, PilotFliesAroundWhatWasNotKnownAndHandsBack) {
 }
 
 TEST(Flight, FollowingAloneCollides) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   scene.follow_alone();
   const FlightResult result = fly(scene.setup);
@@ -52,7 +52,7 @@ TEST(Flight, FollowingAloneCollides) {
 }
 
 TEST(Flight, StartingInsideTheUnknownIsACollision) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(2000, 15000, 800)));
   const FlightResult result = fly(scene.setup);
   EXPECT_EQ(result.status, RunStatus::collided);
@@ -63,12 +63,12 @@ TEST(Flight, StartingInsideTheUnknownIsACollision) {
 TEST(Flight, CollisionDoesNotDependOnTheTimeStep) {
   // A wall of 1 cm, and a mover that is on the route for a fifth of a second.
   for (const double step_s : {0.25, 1.0, 7.0, 60.0}) {
-    Scene wall;
+    FlightScene wall;
     wall.hide(layer("wall", BoxShape{{{17000, 14000, 0}, {17000.01, 16000, 4000}}}));
     wall.follow_alone();
     wall.setup.step_s = step_s;
     EXPECT_EQ(fly(wall.setup).status, RunStatus::collided) << step_s;
-    Scene mover;
+    FlightScene mover;
     mover.hide_moving({17000, 15000, 500}, 500, {0, 200, 0}, 20);
     mover.follow_alone();
     mover.setup.step_s = step_s;
@@ -82,7 +82,7 @@ TEST(Flight, CollisionDoesNotDependOnTheTimeStep) {
 
 TEST(Flight, IsNotKnownBeforeItIsInSensingRange) {
   for (const double sensing_m : {1500.0, 2500.0}) {
-    Scene scene;
+    FlightScene scene;
     scene.hide(layer("unknown", post(17000, 15050, 800)));
     scene.setup.request.vehicle.sensing_m = sensing_m;
     const FlightResult result = fly(scene.setup);
@@ -95,7 +95,7 @@ TEST(Flight, IsNotKnownBeforeItIsInSensingRange) {
 }
 
 TEST(Flight, MovingObstacleIsEvaded) {
-  Scene scene;
+  FlightScene scene;
   scene.hide_moving({14000, 15000, 500}, 400, {-3, 12, 0}, 300);
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 2);
@@ -104,7 +104,7 @@ TEST(Flight, MovingObstacleIsEvaded) {
 }
 
 TEST(Flight, RejectionSaysWhenAndWhere) {
-  Scene scene;
+  FlightScene scene;
   scene.follow_alone();
   scene.setup.route = {
       {2000, 15000, 500}, {11000, 15000, 500}, {12000, 15000, 900}, {28000, 15000, 500}};
@@ -131,7 +131,7 @@ TEST(Flight, EventsAddRemoveAndMove) {
   pop_up.at_s = 200;
   pop_up.id = "pop_up";
   pop_up.layer = layer("pop_up", post(17000, 15050, 800), false);
-  Scene scene;
+  FlightScene scene;
   scene.setup.events = {pop_up};
   const FlightResult evaded = fly(scene.setup);
   expect_flown(evaded, 2);
@@ -163,7 +163,7 @@ TEST(Flight, EventsAddRemoveAndMove) {
 }
 
 TEST(Flight, EventThatNamesNothingFails) {
-  Scene scene;
+  FlightScene scene;
   FlightEvent gone;
   gone.kind = FlightEvent::Kind::remove;
   gone.id = "nobody";
@@ -175,7 +175,7 @@ TEST(Flight, EventThatNamesNothingFails) {
 }
 
 TEST(Flight, GoalMoves) {
-  Scene scene;
+  FlightScene scene;
   FlightEvent away;
   away.kind = FlightEvent::Kind::move_goal;
   away.at_s = 600;
@@ -209,7 +209,7 @@ class Detour final : public Session {
 };
 
 TEST(Flight, ReplansAroundWhatBlocksTheRest) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   scene.follow_alone();
   Detour detour({17000, 13000, 500});
@@ -230,7 +230,7 @@ TEST(Flight, ReplansAroundWhatBlocksTheRest) {
 }
 
 TEST(Flight, ReplanThatBreaksARuleIsNotFlownAndSaysSo) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   scene.follow_alone();
   Detour back_first({4000, 15000, 500});  // a turn on the spot
@@ -252,7 +252,7 @@ TEST(Flight, ReplanThatBreaksARuleIsNotFlownAndSaysSo) {
 
 TEST(Flight, ReplansAtAnyChangeWhereAskedTo) {
   for (const ReplanWhen when : {ReplanWhen::unsafe, ReplanWhen::any_change}) {
-    Scene scene;
+    FlightScene scene;
     scene.hide(layer("aside", post(17000, 17500, 800)));
     Detour detour({20000, 14000, 500});
     scene.setup.replanner = &detour;
@@ -264,7 +264,7 @@ TEST(Flight, ReplansAtAnyChangeWhereAskedTo) {
 }
 
 TEST(Flight, PilotMayFlyAllTheWay) {
-  Scene scene;
+  FlightScene scene;
   scene.setup.always = true;
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 1);
@@ -273,7 +273,7 @@ TEST(Flight, PilotMayFlyAllTheWay) {
 }
 
 TEST(Flight, EndsWhenItsTimeDoes) {
-  Scene scene;
+  FlightScene scene;
   scene.setup.max_time_s = 100;
   const FlightResult result = fly(scene.setup);
   EXPECT_EQ(result.status, RunStatus::not_reached);
@@ -282,14 +282,14 @@ TEST(Flight, EndsWhenItsTimeDoes) {
 }
 
 TEST(Flight, TwoFlightsAreEqual) {
-  Scene scene;
+  FlightScene scene;
   scene.hide(layer("unknown", post(17000, 15050, 800)));
   scene.hide_moving({12000, 15000, 500}, 333, {-3, 12, 0}, 300);
   EXPECT_EQ(fly(scene.setup).track, fly(scene.setup).track);
 }
 
 TEST(Flight, RefusesARouteFromElsewhere) {
-  Scene scene;
+  FlightScene scene;
   scene.setup.route.edit().front().y() += 1;
   EXPECT_THROW(fly(scene.setup), Error);
 }

@@ -25,7 +25,7 @@ std::vector<std::string> rules(const CheckResult& check) {
 using Names = std::vector<std::string>;
 
 TEST(Visit, LeadsToTheTargetAndBackToTheRoute) {
-  Scene scene;
+  FlightScene scene;
   scene.setup.events = {target({15000, 19000, 500}, 100)};
   const FlightResult result = fly(scene.setup);
   expect_flown(result, 2);
@@ -37,7 +37,7 @@ TEST(Visit, LeadsToTheTargetAndBackToTheRoute) {
 }
 
 TEST(Visit, NeedsALocalPlanner) {
-  Scene scene;
+  FlightScene scene;
   scene.follow_alone();
   scene.setup.events = {target({15000, 19000, 500}, 100)};
   const FlightResult result = fly(scene.setup);
@@ -46,7 +46,7 @@ TEST(Visit, NeedsALocalPlanner) {
 }
 
 TEST(Visit, ATrackThatDoesNotIsReported) {
-  Scene scene;
+  FlightScene scene;
   const FlightResult straight = fly(scene.setup);
   scene.setup.events = {target({15000, 19000, 500}, 100)};
   EXPECT_EQ(rules(judge_track(straight.track, scene.setup).check), Names{"visit"});
@@ -95,14 +95,14 @@ class Reported final : public FlownVehicle {
 };
 
 /// As a run sets it up.
-void fly_with(Scene& scene, Reported& vehicle) {
+void fly_with(FlightScene& scene, Reported& vehicle) {
   scene.setup.vehicle = &vehicle;
   scene.setup.telemetry = true;
   scene.setup.request.goal = as_telemetry(scene.setup.request).goal;
 }
 
 TEST(ReportedFlight, IsJudgedWithoutWhatTheAutopilotLimits) {
-  Scene scene;
+  FlightScene scene;
   Reported vehicle;
   fly_with(scene, vehicle);
   const FlightResult result = fly(scene.setup);
@@ -117,7 +117,7 @@ TEST(ReportedFlight, IsJudgedWithoutWhatTheAutopilotLimits) {
 }
 
 TEST(ReportedFlight, IsCommandedWhereADangerIs) {
-  Scene scene;
+  FlightScene scene;
   Reported vehicle;
   fly_with(scene, vehicle);
   scene.hide(layer("hidden", post(15000, 15000, 300)));
@@ -127,7 +127,7 @@ TEST(ReportedFlight, IsCommandedWhereADangerIs) {
 }
 
 TEST(ReportedFlight, OnlyNotesADangerWithoutThePermission) {
-  Scene scene;
+  FlightScene scene;
   Reported vehicle;
   vehicle.may_command = false;
   fly_with(scene, vehicle);
@@ -141,7 +141,7 @@ TEST(ReportedFlight, OnlyNotesADangerWithoutThePermission) {
 }
 
 TEST(ReportedFlight, KeepsTheTrackOfALostVehicle) {
-  Scene scene;
+  FlightScene scene;
   Reported vehicle;
   vehicle.lost_at_s = 50;
   fly_with(scene, vehicle);

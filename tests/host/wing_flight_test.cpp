@@ -182,7 +182,7 @@ TEST(WingFlight, FliesFromLoiterToLoiter) {
 }
 
 TEST(WingFlight, FliesTowardAPilotsSteps) {
-  Scene scene;
+  FlightScene scene;
   scene.setup.request.vehicle.wing = Wing{30, radians(35), radians(12), radians(12)};
   apply_constraints(scene.setup.request, {}, AppliesTo::track);
   scene.hide(layer("unknown", post(17000, 15050, 800)));
