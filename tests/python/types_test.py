@@ -95,7 +95,7 @@ class Values(PythonCase):
     def test_as_declared(self):
         self.walk(altiplan.run(self.pipeline, set={"scenario.goal.at_m": SAMPLE_WORLD}))
         self.walk(altiplan.run(self.pipeline, out=self.folder / "r.json"))
-        for name in ("ridge_crossing", "wing_ridge"):
+        for name in ("ridge_crossing", "wing_ridge", "among_movers"):
             self.walk(altiplan.run(PIPELINES / f"{name}.yaml", set=UNHURRIED))
         self.walk(altiplan.World(self.scenario))
         self.walk(altiplan.check([[0, 0, 0], SAMPLE_WORLD, [900, 500, 100]], self.scenario))

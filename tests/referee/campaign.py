@@ -138,7 +138,8 @@ class Case:
             w.scenario["moving"].append(
                 {"sphere": {"at_m": worlds.rounded(at), "radius_m": w.size(0.005, 0.02),
                             "velocity_mps": worlds.rounded(velocity)},
-                 "id": f"drone_{n}", "known": bool(self.chance(0.5))})
+                 # Routes are judged in time where it is said to be known: which the referee does not.
+                 "id": f"drone_{n}", **({"known": False} if self.chance(0.5) else {})})
         w.scenario["events"] = self.events(start, goal, speed)
         for layer in w.scenario["environment"]:
             if "id" in layer and self.chance(0.15):

@@ -65,7 +65,7 @@ void LimitedObjective::describe(Fields& f) {
 
 void LimitParams::describe(Fields& f) {
   f("of", of).required().doc("the objective");
-  f("maximum", maximum).at_least(0).required().doc("greatest total of a route, in its unit");
+  f("maximum", maximum).at_least(0).required().doc("maximum total of a route, in its unit");
 }
 
 void for_each_objective(const std::string& name, const Value& parameters, const std::string& path,

@@ -154,6 +154,10 @@ class Writer {
     if (!field.required) {
       one_of.push_back({{"not", {{"anyOf", std::move(none)}}}});
     }
+    if (!field.required) {
+      Json none = {{"not", {{"anyOf", one_of}}}};
+      one_of.push_back(std::move(none));
+    }
     all_of.push_back({{"oneOf", std::move(one_of)}});
   }
 
@@ -169,6 +173,10 @@ class Writer {
     }
     if (one_of.empty()) {
       one_of.push_back(false);  // nothing is offered, so nothing is valid
+    }
+    if (!field.required) {
+      Json none = {{"not", {{"anyOf", one_of}}}};
+      one_of.push_back(std::move(none));
     }
     all_of.push_back({{"oneOf", std::move(one_of)}});
   }
