@@ -125,7 +125,7 @@ class Returns(PlanCase):
         self.returns(COPTER, self.beyond(), code=1)
         out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", code=1)
         self.assertRegex(out, r"returns fail: 1 part of the flight without a way home\n"
-                              r"  from \d+ min \d+ s \(item 4 \(waypoint\)\) to .*: a return: the way home: flies into "
+                              r"  from \d+ min \d+ s \(item 4 \(waypoint\)\) to .*: a return's the way home: flies into "
                               r"the ground, up to 1\d\d\.\d m below its surface")
         for file, option in (("c.html", "--certificate"), ("j.xml", "--junit")):
             self.call("mission.plan", "--terrain", "ridge.asc", "--returns", option, file, code=1)

@@ -89,7 +89,7 @@ std::string in_words(const RefusedReturn& refused, const PlanReport& report) {
   };
   return "from " + place(refused.from_s, refused.first) + " to " +
          place(refused.to_s, refused.last) + ", worst at " + time(refused.worst_s) +
-         ": a return: " + refused.finding.violation.message;
+         ": a return's " + refused.finding.violation.message;
 }
 
 void expect_route(const std::string& file, const formats::MissionFile& plan) {
