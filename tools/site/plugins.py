@@ -63,9 +63,10 @@ def of_readme(root, kind, name, sentence, description, problems):
 
 
 def built_in(root, kind, name, sentence, description):
-    """The table is that of docs/reference/files.md."""
+    """The table is that of docs/reference/files.md or objectives.md."""
     table = re.search(f"<!-- parameters of {name} -->\n(.*?)<!-- /parameters -->",
-                      (root / "docs/reference/files.md").read_text(), re.S)[1]
+                      "".join((root / "docs/reference" / page).read_text() for page in ("files.md", "objectives.md")),
+                      re.S)[1]
     return (f"plugins/{kind}/{name}/README.md", head(kind, name, sentence, description)
             + f"## Parameters\n\n{table}\n[Files](../../../docs/reference/files.md) describes the format of layers.\n")
 

@@ -154,10 +154,6 @@ class Writer {
     if (!field.required) {
       one_of.push_back({{"not", {{"anyOf", std::move(none)}}}});
     }
-    if (!field.required) {
-      Json none = {{"not", {{"anyOf", one_of}}}};
-      one_of.push_back(std::move(none));
-    }
     all_of.push_back({{"oneOf", std::move(one_of)}});
   }
 

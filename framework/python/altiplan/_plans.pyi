@@ -477,6 +477,18 @@ class Plan(Protocol):
         bound: true or false, default true
             once there is a route, reject samples through which none can be shorter"""
     @overload
+    def __call__(self, file: _Path, name: Literal["sipp"], /, start: Any = None, goal: Any = None,
+                 seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
+                 plugin_path: Sequence[_Path] = (), cell_m: _Numbers = [50, 50, 10],
+                 max_memory_mb: _Whole = 4096, **others: NoReturn) -> Step:
+        """safe-interval path planning: the earliest arrival among moving obstacles, with waits
+
+        cell_m: 3 numbers [m], ≥ 0.001, default [50, 50, 10]
+            cell edge length on each axis; a layer with its own cells overrides it
+        max_memory_mb: integer [MB], 1 … 2147483647, default 4096
+            memory limit: a search ends where it has used it; where memory for the whole lattice
+            is taken beforehand, one that needs more is refused"""
+    @overload
     def __call__(self, file: _Path, name: Literal["spatial_slicing"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
@@ -658,7 +670,7 @@ class Plan(Protocol):
     def __call__(self, file: _Path, name: Literal["ant_colony", "anya", "astar",
                  "bidirectional_astar", "dstar_lite", "hybrid_astar", "improved_ant_colony",
                  "informed_rrt_star", "jps", "lazy_theta_star", "ompl", "rrt", "rrt_connect",
-                 "rrt_star", "spatial_slicing", "stratified_theta", "theta_star", "apf",
+                 "rrt_star", "sipp", "spatial_slicing", "stratified_theta", "theta_star", "apf",
                  "velocity_field"], /, start: Any = None, goal: Any = None, seed: int = 0,
                  within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), **parameters: Any) -> RefusedParameters: ...
