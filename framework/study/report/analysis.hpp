@@ -11,8 +11,8 @@
 
 namespace altiplan::study::report {
 
-constexpr double kConfidence = 0.95;
-constexpr double kAlpha = 0.05;
+inline constexpr double kConfidence = 0.95;
+inline constexpr double kAlpha = 0.05;
 
 /// The study with pipelines in the order of its file and scenarios by name, whatever their order in
 /// the stores; without values that vary between equal runs if `times` is false.
@@ -129,7 +129,7 @@ std::vector<std::string> short_name_keys(const StudyData& data);
 /// The name of a run, on the command line too: "PIPELINE SCENARIO #REPETITION".
 std::string run_name(const StudyData& data, const RunRow& row);
 /// The rows of each (scenario, repetition), one entry per pipeline; kNoRow if it has not run.
-constexpr std::size_t kNoRow = std::size_t(-1);
+inline constexpr std::size_t kNoRow = std::size_t(-1);
 struct Pair {
   std::size_t scenario = 0;
   int repetition = 0;

@@ -86,7 +86,7 @@ std::string page_data(const Content& content, const Table& scenarios);
 std::string page_text(const Content& content);
 
 /// Number of convergence figures in the page.
-constexpr std::size_t kMaxConvergence = 48;
+inline constexpr std::size_t kMaxConvergence = 48;
 /// Rows of the scenario table in the page; the script adds the others.
-constexpr std::size_t kRowsShown = 50;
+inline constexpr std::size_t kRowsShown = 50;
 }  // namespace altiplan::study::report

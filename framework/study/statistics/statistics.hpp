@@ -17,7 +17,7 @@ namespace altiplan::study {
 // the equivalent SciPy call. For a sample with a NaN the result is NaN or nullopt, unless stated
 // otherwise.
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct Interval {
   double low = 0;
@@ -101,7 +101,7 @@ std::optional<Interval> wilson(std::int64_t successes, std::int64_t trials, doub
 /// A quantity of a sample; receives the sample's values in any order and may reorder them.
 using Statistic = std::function<double(std::span<double>)>;
 
-constexpr std::size_t kResamples = 10'000;
+inline constexpr std::size_t kResamples = 10'000;
 
 /// The percentile interval of the statistic over the given resamples, lists of indices into the
 /// sample. Nothing for an empty sample, no resamples, an empty resample, an index outside the
