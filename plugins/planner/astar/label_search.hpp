@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -193,10 +194,11 @@ class LabelSearch : kit::GoalSearch {
     }
     const bool judged_whole = rules_.is_first(label.in) && from;
     kit::DirectionMask kept = 0;
+    std::array<double, kit::kDirections> g_to;  // of the kept ones
     for (kit::DirectionMask open = rules_.candidates(c, label.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
       const Vec3 there = lattice_.position(cell_at(c, d));
-      const double g = label.g + step_cost(d, here, there);
+      const double g = g_to[std::size_t(d)] = label.g + step_cost(d, here, there);
       kept |= kit::DirectionMask(!exceeds_incumbent(g, there)) << d;
     }
     kept = kept == 0 ? 0 : rules_.legs_free(from, c, here, kept);
@@ -204,7 +206,7 @@ class LabelSearch : kit::GoalSearch {
       const int d = __builtin_ctz(kept);
       const Cell to = cell_at(c, d);
       const Vec3 there = lattice_.position(to);
-      const double g = label.g + step_cost(d, here, there);
+      const double g = g_to[std::size_t(d)];
       const auto next = std::uint32_t(label.cell + lattice_.stride(d));
       const auto in = std::uint8_t(rules_.step_after(label.in, d));
       if (!add_up(spent.data(), here, there, lattice_.step_length(d)) || is_needless(next, in, g) ||
@@ -228,20 +230,8 @@ class LabelSearch : kit::GoalSearch {
   }
 
   Polyline route_to(std::uint32_t last, bool at_goal) const {
-    Polyline route;
-    for (std::uint32_t index = last; index != kNone; index = labels_[index].from) {
-      route.push_back(lattice_.position(lattice_.cell(labels_[index].cell)));
-    }
-    if (at_start_) {
-      route.pop_back();
-    }
-    route.push_back(start_);
-    std::reverse(route.begin(), route.end());
-    if (at_goal) {
-      const Cell c = lattice_.cell(labels_[last].cell);
-      kit::end_at_goal(route, goal_, to_goal_.link_of(c)->length == 0);
-    }
-    return route;
+    return route_along(labels_, last, at_goal,
+                       [&](std::uint32_t cell) { return lattice_.cell(cell); });
   }
 
   std::vector<Resource> resources_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -45,6 +46,26 @@ class GoalSearch : protected LatticeSearch {
       fallback_g_ = g;
       fallback_ = node;
     }
+  }
+
+  /// The route along the path that ends with the link number `last` of a chain, whose links have a
+  /// `from`, the link before or kNone, and a `cell`, of which cell_of gives the coordinates.
+  template <class Chain, class CellOf>
+  Polyline route_along(const Chain& chain, std::uint32_t last, bool at_goal,
+                       const CellOf& cell_of) const {
+    Polyline route;
+    for (std::uint32_t index = last; index != kNone; index = chain[index].from) {
+      route.push_back(lattice_.position(cell_of(chain[index].cell)));
+    }
+    if (at_start_) {
+      route.pop_back();
+    }
+    route.push_back(start_);
+    std::reverse(route.begin(), route.end());
+    if (at_goal) {
+      end_at_goal(route, goal_, to_goal_.link_of(cell_of(chain[last].cell))->length == 0);
+    }
+    return route;
   }
 
   OpenList& open_;

@@ -194,20 +194,8 @@ class HeadingSearch : GoalSearch {
   }
 
   Polyline route_to(std::uint32_t last, bool at_goal) const {
-    Polyline route;
-    for (std::uint32_t index = last; index != kNone; index = arrivals_[index].from) {
-      route.push_back(lattice_.position(tiles_.cell(arrivals_[index].cell)));
-    }
-    if (at_start_) {
-      route.pop_back();
-    }
-    route.push_back(start_);
-    std::reverse(route.begin(), route.end());
-    if (at_goal) {
-      const Cell c = tiles_.cell(arrivals_[last].cell);
-      end_at_goal(route, goal_, to_goal_.link_of(c)->length == 0);
-    }
-    return route;
+    return route_along(arrivals_, last, at_goal,
+                       [&](std::uint32_t cell) { return tiles_.cell(cell); });
   }
 
   TileIndex tiles_;
