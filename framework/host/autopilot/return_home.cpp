@@ -98,11 +98,10 @@ std::vector<Walker::Refuge> Walker::refuges() const {
     }
   }
   const Refuge home{home_, {}, home_z_};
+  // PX4's RTL_TYPE 1 flies to a safe point even where home is nearer.
   const bool leaves_home_out =
       is_px4() && !autopilot_.is_copter() && parameter("RTL_TYPE") == 1 && !plan_.rally.empty();
-  if (leaves_home_out) {
-    // PX4: RTL_TYPE 1 flies to a safe point even where home is nearer.
-  } else if (is_px4() || parameter("RALLY_INCL_HOME") != 0) {
+  if (!leaves_home_out && (is_px4() || parameter("RALLY_INCL_HOME") != 0)) {
     all.push_back(home);
     nearest = std::min(nearest, distance(home));
   } else if (!std::isfinite(nearest)) {

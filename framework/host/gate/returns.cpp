@@ -22,21 +22,21 @@ constexpr double kJoins = 3;           // seconds between refused places that ar
 
 /// The smallest disc about the middle of the strips' box, with their reach.
 Whereabouts around(std::span<const Strip> strips) {
-  Eigen::Vector2d least(kInfinity, kInfinity);
-  Eigen::Vector2d most = -least;
+  Eigen::Vector2d minimum(kInfinity, kInfinity);
+  Eigen::Vector2d maximum = -minimum;
   double reach = 0;
   Whereabouts place{{0, 0}, 0, kInfinity, -kInfinity};
   for (const Strip& strip : strips) {
     for (const Vec3& end : {strip.from, strip.to}) {
-      least = least.cwiseMin(end.head<2>());
-      most = most.cwiseMax(end.head<2>());
+      minimum = minimum.cwiseMin(end.head<2>());
+      maximum = maximum.cwiseMax(end.head<2>());
     }
     reach = std::max(reach, strip.reach_m);
     place.low_m = std::min({place.low_m, strip.from.z(), strip.to.z()});
     place.high_m = std::max({place.high_m, strip.from_high_m, strip.to_high_m});
   }
-  place.at = (least + most) / 2;
-  place.radius_m = (most - least).norm() / 2 + reach;
+  place.at = (minimum + maximum) / 2;
+  place.radius_m = (maximum - minimum).norm() / 2 + reach;
   return place;
 }
 
