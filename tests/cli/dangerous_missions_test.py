@@ -129,6 +129,14 @@ MISSIONS = [
     ("a long wait above home", COPTER, [off(), way(100, 0), HOME], None, {"RTL_LOIT_TIME": 600000}, "RTL_LOIT_TIME"),
     ("parameters in small letters", COPTER, [off(), way(100, 0), HOME], (30, -50, 60, 50, GROUND + 55, GROUND + 90),
      {"rtl_alt": 6000}, "clearance"),
+    ("a gate at an item", PX4_COPTER, [off(), way(100, 0), to(4501, 100, 0, 50), way(200, 0)], None, {}, "a gate so near"),
+    ("a VTOL that does not arm", VTOL, [UP, way(900, 0), way(1200, 0), to(85, 1215, 0, 0)], None, {}, "does not arm"),
+    ("a VTOL that cannot brake", VTOL, [UP, way(900, 0), way(1200, 0), to(85, 1230, 0, 0)], None, {}, "can slow down"),
+    ("jumps within jumps", COPTER,
+     [off(), way(100, 0), way(200, 0), do(177, 2, 5), way(300, 0), do(177, 2, 5), HOME], None, {},
+     "differs between versions"),
+    ("a turn at the first item", PLANE, [way(1000, 0, 100), way(-500, 0, 100), HOME], (1010, 20, 1060, 110, 0, 2000),
+     {}, "clearance"),
     ("wind", PLANE, [way(-1500, 0, 100), way(0, 0, 100), way(0, 1500, 100), HOME], (70, 20, 100, 120, 0, 2000),
      {"WIND": 4}, "clearance"),
 ]
@@ -196,6 +204,35 @@ class Dangerous(PlanCase):
                  (70, 20, 100, 120, 0, 2000), {})):
             with self.subTest(name):
                 self.call(*self.arguments(name, vehicle, items, zone, parameters), code=0)
+
+    def test_old_and_new_name_of_a_parameter(self):
+        arguments = self.arguments("", COPTER, [off(), way(200, 0), HOME], None, {"RTL_ALT": 6000, "RTL_ALT_M": 15})
+        self.assertIn("RTL_ALT_M: expected it or its older name RTL_ALT", self.call(*arguments, code=3)[1])
+
+    def test_what_follows_the_end_of_a_file(self):
+        arguments = self.arguments("", COPTER, [off(), way(200, 0), HOME], None, {})
+        with open(self.folder / "mission.plan", "ab") as file:
+            file.write(b"\0\0")
+        self.assertIn("a byte of value 0", self.call(*arguments, code=3)[1])
+
+    def test_items_of_one_number(self):
+        arguments = self.arguments("", COPTER, [off(), way(200, 0), way(300, 0), do(177, 2, 2)], None, {})
+        file = self.folder / "mission.plan"
+        plan = json.loads(file.read_text())
+        plan["mission"]["items"][2]["doJumpId"] = 2
+        file.write_text(json.dumps(plan))
+        self.assertIn("several items of that number", self.call(*arguments, code=1)[0])
+
+    def test_a_return_of_px4_to_a_rally_point(self):
+        items = [to(22, 300, 0, 50), way(1500, 0, 150), HOME, way(1500, -500, 60), to(21, 1500, -1500, 0)]
+        arguments = self.arguments("", PX4_PLANE, items, None, {"RTL_TYPE": 0})
+        file = self.folder / "mission.plan"
+        plan = json.loads(file.read_text())
+        lon, lat = lonlat(1500, 300)
+        plan["rallyPoints"] = {"points": [[lat, lon, 60]], "version": 2}
+        file.write_text(json.dumps(plan))
+        self.call(*arguments, "--max-agl", "165", code=0)
+        self.assertIn("the height above ground is 160.00 m", self.call(*arguments, "--max-agl", "155", code=1)[0])
 
     def test_parameters_with_which_nothing_flies(self):
         for parameter, value in (("WP_SPD", 0), ("NAVL1_PERIOD", 0), ("ROLL_LIMIT_DEG", 90), ("AIRSPEED_CRUISE", -5)):

@@ -173,6 +173,8 @@ class Wing {
     bool turns_at_90 = false;         ///< the autopilot assumes a right angle
   };
   void go(std::size_t command, const char* what, const Leg& leg);
+  /// The maximum distance before an item at which it turns, where the item sets none.
+  double farthest_turn(double z) const { return l1_s_ * true_speed(1, z); }
   /// The next leg is flown from where the vehicle is, not along the line from the item before.
   void leave_track() { has_track_ = false; }
   /// Flies to a circle and around it, and leaves it toward `next`.

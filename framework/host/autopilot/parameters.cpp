@@ -131,6 +131,10 @@ const Row& row_of(std::string_view name) {
 }
 
 std::optional<double> value_in(const ParameterFile& file, const Row& row) {
+  if (file.contains(row.name) && file.contains(row.old_name)) {
+    throw Error("parameter " + std::string(row.name) + ": expected it or its older name " +
+                row.old_name + ", found both");
+  }
   if (const auto found = file.find(row.name); found != file.end()) {
     return found->second;
   }

@@ -237,7 +237,8 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   if (is_px4() && wing_->low() < leg.to.low) {
     Destination there;
     there.at = wing_->mean_place();
-    there.low = there.high = leg.to.low;
+    there.low = leg.to.low;
+    there.high = leg.to.high;
     wing_->circle(n, "the climb of its return", there, own, true, 0, 0, leg.to, false);
   }
   wing_->leave_track();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>
@@ -28,6 +29,12 @@ class Sequence {
   bool is_jump(std::size_t n) const;
   /// The command that a jump leads to, if there is one.
   std::optional<std::size_t> target_of(std::size_t n) const;
+  /// True if another command has the number of this one.
+  bool has_rival(std::size_t n) const {
+    return std::count_if(commands_.begin(), commands_.end(), [&](const auto& command) {
+             return command.item == commands_[n].item;
+           }) > 1;
+  }
   /// The command after a jump, which is counted; none for a jump that has been made twice and is
   /// made for ever.
   std::optional<std::size_t> after_jump(std::size_t n);

@@ -40,7 +40,24 @@ void Walker::begin_in_the_air(std::size_t n) {
     set_wing_speed();
     const auto next = next_destination(n);
     wing_->start(to.at, to.low, next ? next->at : to.at + Eigen::Vector2d(1, 0), true);
+    if (plan_.home && next && task_of(n) == Task::waypoint) {
+      turn_in(n, to);
+    }
   }
+}
+
+// It comes from where home lies, as far as is known: the turn at its first item is the mission's.
+void Walker::turn_in(std::size_t n, const Destination& to) {
+  const Eigen::Vector2d way = to.at - home_;
+  const double accepted = is_px4() ? parameter("NAV_ACC_RAD") : commands_[n].params[1];
+  const double begins = std::max(wing_->farthest_turn(to.low), accepted);
+  if (way.norm() <= begins) {
+    return;
+  }
+  const TimeSpan begun = mission_.time;
+  wing_->start(to.at - begins * way.normalized(), to.low, to.at, true);
+  fly_wing_to(n, "the turn at its beginning", to, true);
+  mission_.time = begun;
 }
 
 bool Walker::take_off(std::size_t n) {

@@ -92,6 +92,46 @@ class UploadCheck {
                      "some boards run 15 jumps, others 100: what " + std::to_string(jumps) +
                          " jumps fly is not judged");
     }
+    for (std::size_t n = 0; n < commands_.size() && !is_px4(); ++n) {
+      check_nested_jumps(n);
+    }
+  }
+
+  /// Newer versions count the jumps within a jump anew each time.
+  void check_nested_jumps(std::size_t n) {
+    const auto is_counted = [&](std::size_t i) {
+      return commands_.is_jump(i) && commands_[i].params[1] >= 1;
+    };
+    const auto target = is_counted(n) ? commands_.target_of(n) : std::nullopt;
+    for (std::size_t inner = target.value_or(n); inner < n; ++inner) {
+      if (is_counted(inner)) {
+        flight_.remark(Weight::not_judged, "not_judged", n,
+                       "how often a jump within this one is made differs between versions, which "
+                       "is not judged");
+        return;
+      }
+    }
+  }
+
+  /// QuadPlanes do not arm with a landing so near to the waypoint before it.
+  void check_braking(std::size_t n) {
+    constexpr double kBrakes = 2;  // m/s²: Q_TRANS_DECEL
+    const Task task = commands_.task_of(n).task;
+    if (is_px4() || autopilot_.airframe != formats::Airframe::vtol || n == 0 ||
+        (task != Task::vtol_land && task != Task::land) ||
+        commands_.task_of(n - 1).task != Task::waypoint) {
+      return;
+    }
+    const double v = flight_.parameter("AIRSPEED_CRUISE");
+    const double limit = 0.75 * v * v / (2 * kBrakes);
+    const double distance = distance_between(n - 1, n);
+    if (distance < limit) {
+      flight_.remark(Weight::fails, "arming", n,
+                     autopilot_.name() +
+                         " does not arm with a landing nearer to the waypoint before it than it "
+                         "can slow down",
+                     distance, limit);
+    }
   }
 
   /// ArduPilot's aeroplanes do not arm with a landing sequence that a return does not use.
@@ -122,6 +162,7 @@ class UploadCheck {
       return false;
     }
     check_landing_start(n);
+    check_braking(n);
     switch (row.effect(autopilot_)) {
       case Effect::refused:
         return refuse("refused", "refuses the mission at upload because of command " +
@@ -201,6 +242,9 @@ class UploadCheck {
     if (task == Task::jump && !commands_.target_of(n)) {
       return refuse("refused", "finds no item to jump to");
     }
+    if (task == Task::jump && commands_.has_rival(*commands_.target_of(n))) {
+      return refuse("refused", "finds several items of that number to jump to");
+    }
     if ((task == Task::arm && command.params[0] == 0) ||
         (task == Task::engine && command.params[0] == 0 && !autopilot_.is_copter())) {
       return refuse("unforeseeable", "stops the motor here");
@@ -217,6 +261,12 @@ class UploadCheck {
   double height_of(std::size_t n) const {
     const MissionCommand& command = commands_[n];
     return command.altitude_m + (formats::is_of_home(command.frame) ? flight_.home_ground : 0);
+  }
+
+  double distance_between(std::size_t a, std::size_t b) const {
+    return geodesic_course({commands_[a].lon, commands_[a].lat},
+                           {commands_[b].lon, commands_[b].lat})
+        .metres;
   }
 
   bool check_landing(std::size_t n, std::size_t before);
@@ -245,11 +295,22 @@ bool UploadCheck::check_landing(std::size_t n, std::size_t before) {
 
 bool UploadCheck::check_feasibility() {
   std::optional<std::size_t> before;  // the last position
+  std::optional<std::size_t> beside;  // the last position or gate
   std::size_t starts = 0;
   bool lands = false;
   bool is_valid = true;
   for (std::size_t n = 0; n < commands_.size(); ++n) {
+    constexpr double kApart = 0.05;  // metres
+    constexpr int kGate = 4501;
     const Task task = commands_.task_of(n).task;
+    const bool is_gate = commands_[n].number == kGate;
+    if (beside && (is_gate || formats::flies_to_position(task)) &&
+        (is_gate || commands_[*beside].number == kGate) && distance_between(*beside, n) < kApart) {
+      is_valid = refuse(n, "refuses a gate so near to another item");
+    }
+    if (is_gate || formats::flies_to_position(task)) {
+      beside = n;
+    }
     const bool is_take_off = task == Task::take_off || task == Task::vtol_take_off;
     const bool is_landing = task == Task::land || task == Task::vtol_land;
     starts += task == Task::landing_start;

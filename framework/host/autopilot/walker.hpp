@@ -77,6 +77,8 @@ class Walker {
   /// A mission without a take-off begins where the vehicle is flown by hand; PX4's copter climbs.
   void begin_in_the_air(std::size_t n);
 
+  void turn_in(std::size_t n, const Destination& to);
+
   bool take_off(std::size_t n);
 
   /// ArduPilot's VTOL adds the number to its present height, whatever the frame says.

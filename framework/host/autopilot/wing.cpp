@@ -169,13 +169,15 @@ std::array<double, 2> Wing::sought_heights(const Leg& leg, const Eigen::Vector2d
     return {std::min(heights[0], heights[1]), std::max(heights[0], heights[1])};
   }
   const double height = sought_height(leg, share);
+  // Of a return or a new home, whose height is known in bounds.
+  const double spread = std::max(from_.high - from_.low, leg.to.high - leg.to.low);
   // It may be above the ramp by now, or climb steeply up to CLIMB_SLOPE_HGT.
   constexpr double kSteepBelow = 25;
   const bool may_be_steep = !has_track_ || from_.low < flight_.home_ground + kSteepBelow;
   if (may_be_steep && !flight_.autopilot().is_px4()) {
-    return {std::min(height, leg.to.low), std::max(height, leg.to.low)};
+    return {std::min(height, leg.to.low), std::max(height, leg.to.low) + spread};
   }
-  return {height, height};
+  return {height, height + spread};
 }
 
 double Wing::sought_height(const Leg& leg, double share) const {
@@ -341,14 +343,15 @@ void Wing::cut_corner(const Leg& leg) {
   if (room_back < 1 || room_onward < 1) {
     return;
   }
+  const double spread = std::max(from_.high - from_.low, leg.to.high - leg.to.low);
   const int chords = int(std::ceil(cut_m_ / kReach));
   for (int n = 1; n <= chords; ++n) {
     const double before = cut_m_ * n / chords;
     const Vec3 a = corner + back * std::min(1.0, before / room_back);
     const Vec3 b = corner + onward * std::min(1.0, before / room_onward);
-    flight_.add_strip({a.x(), a.y(), std::min(a.z(), corner.z())}, std::max(a.z(), corner.z()),
-                      {b.x(), b.y(), std::min(b.z(), corner.z())}, std::max(b.z(), corner.z()),
-                      kReach);
+    flight_.add_strip(
+        {a.x(), a.y(), std::min(a.z(), corner.z())}, std::max(a.z(), corner.z()) + spread,
+        {b.x(), b.y(), std::min(b.z(), corner.z())}, std::max(b.z(), corner.z()) + spread, kReach);
   }
 }
 
@@ -385,7 +388,7 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
     // The track itself, which the latest turn overshoots and the first one cuts.
     const Vec3 a = from_.point();
     if (!leg.to.above_ground && !from_.above_ground) {
-      flight_.add_leg(a, a.z(), leg.to.point(), leg.to.low, kBesideTrack);
+      flight_.add_leg(a, from_.high, leg.to.point(), leg.to.high, kBesideTrack);
     }
   }
   TimeSpan time{kInfinity, 0};

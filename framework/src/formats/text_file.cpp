@@ -101,6 +101,10 @@ std::size_t line_at(const std::string& text, std::size_t offset) {
 }
 
 Json parse_json(const std::string& file, const std::string& text, const OnItem& on_item) {
+  if (const auto at = text.find('\0'); at != text.npos) {  // the parser would take it for the end
+    throw Error(file + ":" + std::to_string(line_at(text, at)) +
+                ": expected JSON, found a byte of value 0");
+  }
   Builder builder(file, text, on_item);
   Json::sax_parse(text, &builder);
   return builder.take();
