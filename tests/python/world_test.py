@@ -197,8 +197,8 @@ class Names(PythonCase):
     def test_every_class_is_public(self):
         classes = {name for name, found in vars(altiplan._altiplan).items() if isinstance(found, type)}
         self.assertEqual(classes | {
-            "Cells", "Error", "Ground", "NoRoute", "Study", "check", "constraint", "environment", "go",
-            "parameter", "parameters", "plan", "planner", "run", "smoother", "study"},
+            "Cells", "Error", "Field", "Ground", "NoRoute", "Study", "check", "constraint", "environment",
+            "go", "objective", "parameter", "parameters", "plan", "planner", "run", "smoother", "study"},
             set(altiplan.__all__))
 
     def test_everything_has_a_docstring(self):

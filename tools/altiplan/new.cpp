@@ -27,7 +27,8 @@ struct NewArguments {
 
 constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner", "objective",
                                        "planner",    "smoother",    "tuner"};
-constexpr std::string_view kKindsInPython[] = {"constraint", "environment", "planner", "smoother"};
+constexpr std::string_view kKindsInPython[] = {"constraint", "environment", "objective", "planner",
+                                               "smoother"};
 
 /// The C++ keywords, each between spaces.
 constexpr std::string_view kKeywords =
@@ -220,10 +221,10 @@ void add_new(App& app, Action& action) {
       ->required();
   command.add_option("name", arguments.name, "name of the plugin and of its folder, in snake_case")
       ->required();
-  command.add_flag(
-      "--python", arguments.python,
-      "write a constraint, environment, planner or smoother in Python: the file NAME.py, "
-      "which needs no build");
+  command.add_flag("--python", arguments.python,
+                   "write a constraint, environment, objective, planner or smoother in Python: the "
+                   "file NAME.py, "
+                   "which needs no build");
   set_example(command, "altiplan new planner my_planner");
 }
 }  // namespace altiplan::cli

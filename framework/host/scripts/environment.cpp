@@ -6,6 +6,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/kit/layers/field_layer.hpp"
+#include "altiplan/kit/layers/scalar_field.hpp"
 #include "host/base/shapes.hpp"
 #include "host/scripts/object.hpp"
 #include "host/scripts/values.hpp"
@@ -127,10 +128,29 @@ std::unique_ptr<Environment> ground_of(const Json& reported, const std::vector<d
 }
 }  // namespace
 
+namespace {
+ScriptMessage built_by(ScriptSource source, const Site& site) {
+  return ScriptObject(std::move(source))
+      .answer({{{"build", script_values(site)}}, {}}, {site.before, nullptr, &site.frame},
+              kBuildTimeout);
+}
+}  // namespace
+
+std::unique_ptr<Objective> script_objective(ScriptSource source, const Site& site) {
+  const ScriptMessage built = built_by(std::move(source), site);
+  const Json& field = built.head.at("field");
+  const Json& elsewhere = field.at("elsewhere");
+  return std::make_unique<kit::FieldIntegral>(
+      kit::ScalarField(field.at("origin_m").get<std::array<double, 2>>(),
+                       field.at("spacing_m").get<std::array<double, 2>>(),
+                       field.at("columns").get<int>(), field.at("rows").get<int>(),
+                       {built.numbers.begin(), built.numbers.end()},
+                       elsewhere.is_null() ? kInfinity : elsewhere.get<double>()),
+      field.at("unit").get<std::string>());
+}
+
 std::unique_ptr<Environment> script_environment(ScriptSource source, const Site& site) {
-  const ScriptMessage built = ScriptObject(std::move(source))
-                                  .answer({{{"build", script_values(site)}}, {}},
-                                          {site.before, nullptr, &site.frame}, kBuildTimeout);
+  const ScriptMessage built = built_by(std::move(source), site);
   if (built.head.contains("ground")) {
     return ground_of(built.head["ground"], built.numbers, site);
   }

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kOffer = "@altiplan.";
-constexpr std::string_view kKinds[] = {"environment", "constraint", "planner", "smoother"};
+constexpr std::string_view kKinds[] = {"environment", "constraint", "planner", "smoother",
+                                       "objective"};
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);

@@ -66,6 +66,10 @@ std::unique_ptr<Environment> make_environment(const Script& script, const Value*
 std::unique_ptr<Constraint> make_constraint(const Script& script, const Value* source) {
   return guarded([&] { return script_constraint(source_of(script, source)); });
 }
+std::unique_ptr<Objective> make_objective(const Script& script, const Value* source,
+                                          const Site& site) {
+  return guarded([&] { return script_objective(source_of(script, source), site); });
+}
 std::unique_ptr<Planner> make_planner(const Script& script, const Value* source) {
   return guarded([&] { return std::make_unique<ScriptPlanner>(source_of(script, source)); });
 }
@@ -86,6 +90,10 @@ std::unique_ptr<Constraint> constraint_at(const Value* source) {
   return make_constraint(*the_scripts[N], source);
 }
 template <std::size_t N>
+std::unique_ptr<Objective> objective_at(const Value* source, const Site& site) {
+  return make_objective(*the_scripts[N], source, site);
+}
+template <std::size_t N>
 std::unique_ptr<Planner> planner_at(const Value* source) {
   return make_planner(*the_scripts[N], source);
 }
@@ -101,6 +109,7 @@ constexpr PluginEntry entry_at() {
   entry.describe = &describe_at<N>;
   entry.environment = &environment_at<N>;
   entry.constraint = &constraint_at<N>;
+  entry.objective = &objective_at<N>;
   entry.planner = &planner_at<N>;
   entry.smoother = &smoother_at<N>;
   return entry;
@@ -115,6 +124,7 @@ void keep_factory_of_kind(PluginEntry& entry) {
   const std::string_view kind = entry.kind;
   entry.environment = kind == "environment" ? entry.environment : nullptr;
   entry.constraint = kind == "constraint" ? entry.constraint : nullptr;
+  entry.objective = kind == "objective" ? entry.objective : nullptr;
   entry.planner = kind == "planner" ? entry.planner : nullptr;
   entry.smoother = kind == "smoother" ? entry.smoother : nullptr;
 }

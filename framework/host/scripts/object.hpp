@@ -10,6 +10,7 @@
 
 #include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/smoother.hpp"
 #include "host/base/json.hpp"
@@ -90,4 +91,7 @@ std::unique_ptr<Constraint> script_constraint(ScriptSource source);
 /// A layer of what `build` in Python returns: solids, the cells of a grid, or ground. Its process
 /// ends with the call; the layer is one of the kit.
 std::unique_ptr<Environment> script_environment(ScriptSource source, const Site& site);
+
+/// The integral of the field that `build` in Python returns. Its process ends with the call.
+std::unique_ptr<Objective> script_objective(ScriptSource source, const Site& site);
 }  // namespace altiplan::host

@@ -14,7 +14,8 @@
 namespace altiplan::host {
 
 /// True for a file of Python with a line that begins with `@altiplan.planner(`, or likewise with
-/// smoother, environment or constraint. Other files of Python may lie in the same folder.
+/// smoother, environment, constraint or objective. Other files of Python may lie in the same
+/// folder.
 bool offers_scripts(const std::filesystem::path& file);
 bool is_script(const std::filesystem::path& file);
 

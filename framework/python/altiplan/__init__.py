@@ -22,14 +22,14 @@ from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violat
                         __version__)
 from ._error import Error
 from ._go import go
-from ._planner import (Cells, Ground, NoRoute, constraint, environment, parameter, parameters,
-                       planner, smoother)
+from ._planner import (Cells, Field, Ground, NoRoute, constraint, environment, objective, parameter,
+                       parameters, planner, smoother)
 from ._plans import typed as _typed
 from ._study import Study, study
 
-__all__ = ["Cells", "Check", "Error", "Flight", "Ground", "Leg", "Metrics", "NoRoute", "Result",
-           "Route", "Step", "Study", "Violation", "World", "check", "constraint", "environment", "go",
-           "parameter", "parameters", "plan", "planner", "run", "smoother", "study"]
+__all__ = ["Cells", "Check", "Error", "Field", "Flight", "Ground", "Leg", "Metrics", "NoRoute",
+           "Result", "Route", "Step", "Study", "Violation", "World", "check", "constraint", "environment",
+           "go", "objective", "parameter", "parameters", "plan", "planner", "run", "smoother", "study"]
 
 _Path = _Union[str, "_os.PathLike[str]"]
 

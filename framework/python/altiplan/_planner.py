@@ -87,6 +87,13 @@ def constraint(name: str, sentence: str,
     return _announced("constraint", name, sentence, params)
 
 
+def objective(name: str, sentence: str,
+              params: type = _NoParameters) -> typing.Callable[[_Made], _Made]:
+    """As planner, of a class with a method build(site), which returns a Field: what is minimised is
+    its integral along the route. It depends on the parameters and the site alone."""
+    return _announced("objective", name, sentence, params)
+
+
 def _announced(kind: str, name: str, sentence: str,
                params: type) -> typing.Callable[[_Made], _Made]:
     if not dataclasses.is_dataclass(params):
@@ -199,7 +206,7 @@ def constructed(plugin: typing.Dict[str, typing.Any],
 
 def properties_of(kind: str, plugin: typing.Any) -> typing.Dict[str, typing.Any]:
     """The methods and traits of an object."""
-    needs = {"planner": ("plan",), "smoother": ("smooth",), "environment": ("build",),
+    needs = {"planner": ("plan",), "smoother": ("smooth",), "environment": ("build",), "objective": ("build",),
              "constraint": ("tighten", "admits", "violations")}[kind]
     methods = [name for name in needs if callable(getattr(plugin, name, None))]
     if not methods:
@@ -217,6 +224,17 @@ class Ground(typing.NamedTuple):
     heights: typing.Any  # rows from the south, of at least 2 posts each
     spacing_m: typing.Any  # one number, or (east, north)
     origin_m: typing.Tuple[float, float] = (0.0, 0.0)  # of the post in the south west
+
+
+class Field(typing.NamedTuple):
+    """Costs of a metre of flight at posts, at least 0, bilinear between them: values[j, i] is i
+    spacings east and j spacings north of the origin; NaN where there is none. `elsewhere` is the cost
+    where there are none; None: routes do not lead there. `unit` is that of a cost times a metre."""
+    values: typing.Any  # rows from the south, of at least 2 posts each
+    spacing_m: typing.Any  # one number, or (east, north)
+    origin_m: typing.Tuple[float, float] = (0.0, 0.0)  # of the post in the south west
+    elsewhere: typing.Optional[float] = None
+    unit: str = ""
 
 
 class Cells(typing.NamedTuple):

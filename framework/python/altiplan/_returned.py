@@ -17,6 +17,7 @@ _BAND = ("above_ground", "min_m", "max_m")
 _LONGEST = 2000  # characters of a message
 _CONTROLS = dict.fromkeys([*range(32), *range(127, 160)], " ")  # which terminals would obey
 _HIGHEST_M = 100_000.0
+_HIGHEST_COST = 1e9  # of a metre
 _MAX_VIOLATIONS = 10_000  # of a route; more tell nothing
 _ANGLES = {"max_turn": math.pi, "max_turn_in_space": math.pi, "max_climb": math.pi / 2,
            "max_descent": math.pi / 2}
@@ -82,17 +83,38 @@ def _flat(values: typing.Any, shape: typing.Sequence[int], name: str) -> "array[
     return flat
 
 
+def _posts(posts: typing.Any, values: typing.Any, name: str) -> typing.Tuple[_Json, "array[float]"]:
+    """Where the posts of Ground or Field lie, and their values, which are called `name`."""
+    rows, columns = shape = _shape(values, 2, name)
+    flat = _flat(values, shape, name)
+    spacing = numbers_or_one(posts.spacing_m, 2, "spacing_m")
+    if rows < 2 or columns < 2 or min(spacing) <= 0:
+        raise ValueError(f"{type(posts).__name__}: expected 2 rows and columns or more, and spacings "
+                         f"above 0, found {rows} x {columns} posts of {spacing} m")
+    return {"rows": rows, "columns": columns, "spacing_m": spacing,
+            "origin_m": numbers_or_one(posts.origin_m, 2, "origin_m")}, flat
+
+
 def _ground(ground: typing.Any) -> _Answer:
-    rows, columns = shape = _shape(ground.heights, 2, "heights")
-    heights = _flat(ground.heights, shape, "heights")
+    posts, heights = _posts(ground, ground.heights, "heights")
     if not all(-_HIGHEST_M <= height <= _HIGHEST_M for height in heights):
         raise ValueError(f"heights: expected a finite number at each post, up to {_HIGHEST_M:.0f} m")
-    spacing = numbers_or_one(ground.spacing_m, 2, "spacing_m")
-    if rows < 2 or columns < 2 or min(spacing) <= 0:
-        raise ValueError("Ground: expected 2 rows and columns or more, and spacings above 0, found "
-                         f"{rows} x {columns} posts of {spacing} m")
-    return {"ground": {"rows": rows, "columns": columns, "spacing_m": spacing,
-                       "origin_m": numbers_or_one(ground.origin_m, 2, "origin_m")}}, heights
+    return {"ground": posts}, heights
+
+
+def field(returned: typing.Any) -> _Answer:
+    """What `build` of an objective returns."""
+    if not isinstance(returned, _planner.Field):
+        raise TypeError(f"build: expected a Field, found {type(returned).__name__}")
+    posts, values = _posts(returned, returned.values, "values")
+    if not all(0 <= value <= _HIGHEST_COST or math.isnan(value) for value in values):
+        raise ValueError(f"values: expected 0 to {_HIGHEST_COST:g} at each post, or NaN")
+    if all(map(math.isnan, values)):
+        raise ValueError("values: expected a number at one post or more, found NaN alone")
+    elsewhere = None if returned.elsewhere is None else number(returned.elsewhere, "elsewhere")
+    if elsewhere is not None and not 0 <= elsewhere <= _HIGHEST_COST:
+        raise ValueError(f"elsewhere: expected 0 to {_HIGHEST_COST:g}, found {elsewhere}")
+    return {"field": {**posts, "elsewhere": elsewhere, "unit": text(returned.unit)}}, values
 
 
 def _cells(cells: typing.Any) -> _Answer:

@@ -182,6 +182,7 @@ class Worker:
     def __init__(self, file: str, api: typing.Any, connection: Connection):
         self._file, self._api, self._connection = file, api, connection
         self._object: typing.Any = None
+        self._kind = ""
 
     def _load(self) -> None:
         # A name of its own, since numpy.py would stand for numpy.
@@ -199,6 +200,7 @@ class Worker:
         if "make" in message:
             plugin = next(one for one in self._api.offered
                           if (one["kind"], one["name"]) == (message["kind"], message["make"]))
+            self._kind = plugin["kind"]
             self._object = self._api.constructed(plugin, message["with"])
             return self._api.properties_of(plugin["kind"], self._object), ()
         self._connection.stopped = False
@@ -210,7 +212,8 @@ class Worker:
         if task == "admits":
             return {"yes": returned.admitted(method(self._api.given.Leg(numbers, ask)))}, ()
         if task == "build":
-            layer: _Answer = returned.built(method(self._api.given.Site(message[task], ask)))
+            built = method(self._api.given.Site(message[task], ask))
+            layer: _Answer = (returned.field if self._kind == "objective" else returned.built)(built)
             return layer
         request = self._api.given.Request(message[task], ask, self._connection.is_stopped)
         if task == "tighten":
@@ -242,8 +245,8 @@ def light_package() -> typing.Any:
     sys.modules["altiplan"] = package
     from altiplan import _planner, _request, _returned
 
-    for name in ("Cells", "Ground", "NoRoute", "constraint", "environment", "parameter", "parameters",
-                 "planner", "smoother"):
+    for name in ("Cells", "Field", "Ground", "NoRoute", "constraint", "environment", "objective",
+                 "parameter", "parameters", "planner", "smoother"):
         setattr(package, name, getattr(_planner, name))
     setattr(_planner, "given", _request)
     setattr(_planner, "returned", _returned)

@@ -7,10 +7,10 @@
 
 #include "altiplan/environment.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/scalar_field.hpp"
 #include "altiplan/map_system.hpp"
 #include "altiplan/objective.hpp"
 #include "altiplan/plugin.hpp"
-#include "field.hpp"
 #include "raster.hpp"
 
 namespace {
@@ -81,7 +81,7 @@ void place(exposure::Raster& raster, const Frame& frame) {
   raster.step = step;
 }
 
-exposure::Field field_of(const Params& params, const Frame& frame) {
+kit::ScalarField field_of(const Params& params, const Frame& frame) {
   try {
     const std::string kind = std::filesystem::path(params.file.text).extension().string();
     const bool is_tiff = kind == ".tif" || kind == ".tiff";
@@ -100,32 +100,10 @@ exposure::Field field_of(const Params& params, const Frame& frame) {
   }
 }
 
-class Exposure final : public Objective {
+class Exposure final : public kit::FieldIntegral {
  public:
   Exposure(const Params& params, const Site& site)
-      : unit_(params.unit), field_(field_of(params, site.frame)) {}
-
- private:
-  double do_cost(const Leg& leg, double, const Request&) const override {
-    if (!leg.turns()) {
-      return field_.integral(leg.from, leg.to);
-    }
-    const std::vector<Vec3> points = leg.chords(kTolerance);
-    double sum = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      sum += field_.integral(points[i - 1], points[i]);
-    }
-    return sum;
-  }
-  double do_bound(const Vec3& from, const Vec3& to, const Request&) const override {
-    return field_.bound(from, to);
-  }
-  std::string do_unit() const override { return unit_; }
-
-  static constexpr double kTolerance = 1e-4;  // of chords, metres
-
-  std::string unit_;
-  exposure::Field field_;
+      : FieldIntegral(field_of(params, site.frame), params.unit) {}
 };
 }  // namespace
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "field.hpp"
+#include "altiplan/kit/layers/scalar_field.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace exposure {
+namespace altiplan::kit {
 
-Field::Field(std::array<double, 2> origin, std::array<double, 2> step, int columns, int rows,
-             std::vector<float> values, double elsewhere)
+ScalarField::ScalarField(std::array<double, 2> origin, std::array<double, 2> step, int columns,
+                         int rows, std::vector<float> values, double elsewhere)
     : origin_(origin),
       step_(step),
       counts_{columns, rows},
@@ -53,23 +53,29 @@ class Lines {
     left_ = along_ > 0   ? int(std::max(0.0, std::min(last, std::ceil(to)) - line_ + 1))
             : along_ < 0 ? int(std::max(0.0, line_ - std::max(0.0, std::floor(to)) + 1))
                          : 0;
+    find_next();
   }
   /// Infinite after the last one.
-  double next() const { return left_ > 0 ? (line_ - from_) / along_ : kInfinity; }
+  double next() const { return next_; }
   void advance() {
     line_ += along_ > 0 ? 1 : -1;
     --left_;
+    find_next();
   }
 
  private:
+  void find_next() { next_ = left_ > 0 ? (line_ - from_) / along_ : kInfinity; }
+
   double from_;
   double along_;
   double line_;
+  double next_;
   int left_;
 };
 }  // namespace
 
-double Field::mean(const std::array<double, 2>& from, const std::array<double, 2>& to) const {
+inline double ScalarField::mean(const std::array<double, 2>& from,
+                                const std::array<double, 2>& to) const {
   const std::array<double, 2> middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
   std::array<int, 2> cell{};
   for (const std::size_t axis : {0U, 1U}) {
@@ -86,15 +92,14 @@ double Field::mean(const std::array<double, 2>& from, const std::array<double, 2
   if (std::isnan(sw + se + nw + ne)) {
     return elsewhere_;
   }
-  const auto at = [&](const std::array<double, 2>& p) {
-    const double u = p[0] - i;
-    const double v = p[1] - j;
-    return std::max(0.0, (1 - v) * ((1 - u) * sw + u * se) + v * ((1 - u) * nw + u * ne));
-  };
-  return (at(from) + 4 * at(middle) + at(to)) / 6;
+  // The mean of u v along the piece is that of its middle and a twelfth of its rises.
+  const double u = middle[0] - i;
+  const double v = middle[1] - j;
+  const double uv = u * v + (to[0] - from[0]) * (to[1] - from[1]) / 12;
+  return std::max(0.0, sw + u * (se - sw) + v * (nw - sw) + uv * (sw - se - nw + ne));
 }
 
-double Field::integral(const Vec3& a, const Vec3& b) const {
+double ScalarField::integral(const Vec3& a, const Vec3& b) const {
   const double length = (b - a).norm();
   if (length == 0) {
     return 0;
@@ -121,7 +126,7 @@ double Field::integral(const Vec3& a, const Vec3& b) const {
   return length * sum;
 }
 
-double Field::minimum_up_to(std::size_t axis, double at) const {
+double ScalarField::minimum_up_to(std::size_t axis, double at) const {
   const std::vector<double>& minima = minima_[axis];
   const std::vector<double>& crossed = crossed_[axis];
   const double last = counts_[axis] - 1;
@@ -138,7 +143,7 @@ double Field::minimum_up_to(std::size_t axis, double at) const {
   return crossed[i] + u * step_[axis] * (minima[i] + here) / 2;
 }
 
-double Field::bound(const Vec3& a, const Vec3& b) const {
+double ScalarField::bound(const Vec3& a, const Vec3& b) const {
   double bound = (std::isfinite(minimum_) ? minimum_ : 0) * (b - a).norm();
   for (const std::size_t axis : {0U, 1U}) {
     const double from = (a[Eigen::Index(axis)] - origin_[axis]) / step_[axis];
@@ -147,4 +152,17 @@ double Field::bound(const Vec3& a, const Vec3& b) const {
   }
   return bound * (1 - 1e-12);  // of rounding
 }
-}  // namespace exposure
+
+double FieldIntegral::do_cost(const Leg& leg, double, const Request&) const {
+  constexpr double kTolerance = 1e-4;  // of chords, metres
+  if (!leg.turns()) {
+    return field_.integral(leg.from, leg.to);
+  }
+  const std::vector<Vec3> points = leg.chords(kTolerance);
+  double sum = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    sum += field_.integral(points[i - 1], points[i]);
+  }
+  return sum;
+}
+}  // namespace altiplan::kit

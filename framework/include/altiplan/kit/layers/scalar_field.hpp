@@ -2,26 +2,25 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "altiplan/geometry.hpp"
+#include "altiplan/objective.hpp"
 
-namespace exposure {
-
-using altiplan::kInfinity;
-using altiplan::Vec3;
+namespace altiplan::kit {
 
 /// A scalar field over the plane: bilinear between posts, and one value where there are none
 /// (beyond the posts, and in the cells around a post without a value).
-class Field {
+class ALTIPLAN_API ScalarField {
  public:
-  /// Posts in rows from the south, each from the west, at (origin x + i dx, origin y + j dy);
-  /// values >= 0, NaN: none. `elsewhere`: the value where there are none, may be infinite.
-  Field(std::array<double, 2> origin, std::array<double, 2> step, int columns, int rows,
-        std::vector<float> values, double elsewhere);
+  /// Posts in rows from the south, each from the west, at (origin x + i dx, origin y + j dy), at
+  /// least 2 of each; values >= 0, NaN: none. `elsewhere`: the value where there are none, may be
+  /// infinite.
+  ScalarField(std::array<double, 2> origin, std::array<double, 2> step, int columns, int rows,
+              std::vector<float> values, double elsewhere);
 
-  /// Integral of the field over the length of the straight leg a–b, exact up to rounding: along a
-  /// leg a bilinear cell is a quadratic, which Simpson's rule integrates.
+  /// Integral of the field over the length of the straight leg a–b, exact up to rounding.
   double integral(const Vec3& a, const Vec3& b) const;
 
   /// At most the integral along any path from a to b: the largest of the field's minimum times
@@ -48,4 +47,22 @@ class Field {
   std::array<std::vector<double>, 2> minima_;
   std::array<std::vector<double>, 2> crossed_;
 };
-}  // namespace exposure
+
+/// The integral of a scalar field along the route; turns by chords within 0.1 mm.
+class ALTIPLAN_API FieldIntegral : public Objective {
+ public:
+  /// `unit`: of a value times a metre, for people.
+  FieldIntegral(ScalarField field, std::string unit)
+      : field_(std::move(field)), unit_(std::move(unit)) {}
+
+ private:
+  double do_cost(const Leg& leg, double time_s, const Request& request) const override;
+  double do_bound(const Vec3& from, const Vec3& to, const Request&) const override {
+    return field_.bound(from, to);
+  }
+  std::string do_unit() const override { return unit_; }
+
+  ScalarField field_;
+  std::string unit_;
+};
+}  // namespace altiplan::kit
