@@ -7,6 +7,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/base/output_file.hpp"
+#include "host/result/stored_result.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
@@ -79,6 +80,25 @@ Result hand_over(const RunCall& call, const host::Config& config, const host::Ru
   result.plugin_path = call.overrides.plugin_path;
   result.warnings = run.warnings;
   result.notes = run.notes;
+  return result;
+}
+
+/// The route of a result or of a step, as result.json has it.
+std::shared_ptr<const Route> stored_route(const Json& holder) {
+  const bool has_one = holder.at("route").is_array() && !holder.at("route").empty();
+  return has_one ? std::make_shared<const Route>(host::route_of(holder, "the stored result"))
+                 : nullptr;
+}
+
+/// Of a result that a study has stored.
+Result stored(const std::string& text, const std::vector<fs::path>& plugin_path) {
+  Result result;
+  result.json = Json::parse(text);
+  for (const Json& step : result.json.at("steps")) {
+    result.steps.push_back(std::make_shared<Step>(Step{{step}, stored_route(step)}));
+  }
+  result.route = stored_route(result.json);
+  result.plugin_path = plugin_path;
   return result;
 }
 
@@ -241,6 +261,7 @@ void add_result(py::module_& module) {
       },
       py::arg("pipeline"), py::arg("seed"), py::arg("set"), py::arg("plugin_path"),
       py::arg("threads"), py::arg("timeout_s"), py::arg("out"));
+  module.def("stored", stored, py::arg("text"), py::arg("plugin_path"));
   module.def(
       "plan",
       [](const fs::path& file, std::optional<std::int64_t> seed,

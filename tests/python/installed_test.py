@@ -28,6 +28,7 @@ class Installed(PythonCase):
             "print(*[line.split()[-1] for line in open('/proc/self/maps') if 'altiplan' in line])\n",
             self.pipeline, env=path)
         self.assertIn("solved", text)
+        self.assertTrue((tree / "share/altiplan/notebooks/study.ipynb").is_file())
         self.assertRegex(text, rf"searched: {tree}/lib[^ ]*/altiplan/plugins")
         self.assertNotIn(build + "/", text)
         self.new_planner(tree / "bin/altiplan", {**path, "ALTIPLAN_PYTHON": sys.executable})

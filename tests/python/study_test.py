@@ -74,12 +74,12 @@ class Runs(StudyCase):
 
     def test_results(self):
         study = altiplan.study(self.file, self.store)
-        statuses = {study.result(run)["status"] for run in range(1, 7)}
+        statuses = {study.result(run).status for run in range(1, 7)}
         self.assertEqual(statuses, {"solved", "invalid_problem"})
         for none in (0, 7, 2**62):
             self.assertRaises(KeyError, study.result, none)
         self.assertRaises(TypeError, study.result, "1")
-        self.assertEqual(pickle.loads(pickle.dumps(study)).result(1), study.result(1))
+        self.assertEqual(pickle.loads(pickle.dumps(study)).result(1).to_json(), study.result(1).to_json())
 
     def test_the_same_result_each_way(self):
         """Of a random planner, a smoother and a flight: by a study, the program, and altiplan.run."""
@@ -95,14 +95,19 @@ steps:
         study = altiplan.study(file, self.store)
         routes = []
         for run in (1, 2):
-            stored = study.result(run)
-            seed = stored["seed"]
+            result_of_study = study.result(run)
+            stored = result_of_study.to_dict()
+            seed = result_of_study.seed
             subprocess.run([PROGRAM, "run", pipeline, f"--seed={seed}", "--out", self.folder / "c.json"],
                            check=True, stdout=subprocess.DEVNULL, timeout=HANGS_S)
             result = altiplan.run(pipeline, seed=seed, out=self.folder / "p.json")
             by_program, by_python = ((self.folder / name).read_text() for name in ("c.json", "p.json"))
             self.assertEqual(untimed(by_python), untimed(by_program))
             self.assertEqual(result.to_json(), by_python)
+            self.assertEqual(result_of_study.route.points.tolist(), result.route.points.tolist())
+            self.assertEqual([step.route and step.route.points.tolist() for step in result_of_study.steps],
+                             [step.route and step.route.points.tolist() for step in result.steps])
+            self.assertEqual(result_of_study.flight.metrics.length_m, result.flight.metrics.length_m)
             # A study writes to no folder, and says which scenario it gives the pipeline.
             plain = json.loads(by_program)
             self.assertEqual(plain.pop("folder"), str(self.folder))
@@ -224,6 +229,8 @@ class Tables(StudyCase):
         success = tables["success"]
         self.assertEqual(success.pipeline.tolist(), ["fine", "coarse"])
         self.assertEqual((success.runs.tolist(), success.runs.dtype.kind), ([3, 3], "i"))
+        self.assertEqual(success.share.tolist(), [0.667, 0.667])
+        self.assertTrue((success["interval from"] < success.share).all() and (success.share < success["interval to"]).all())
         verdict = tables["verdicts"].iloc[0]
         self.assertEqual((verdict.claim, verdict.claimed), ("shorter", "<= 1"))
         self.assertEqual(len(tables["scenarios"]), 3)

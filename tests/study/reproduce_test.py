@@ -159,6 +159,8 @@ class Reproduce(case.StudyCase):
         self.assertRegex(out, r"greedy +80 ms +0\.2 s +the greedy one\n")
         self.assertRegex(out, r"saves +0\.3 s +0\.6 s +saves nodes\n")
         self.assertRegex(out, r"all +0\.3 s +0\.6 s +all 3 rows")
+        self.write("007_cities.yaml", PAPER.replace('    cpu_ms: {octile: 10, "greedy[weight_g=0.3]": 4}\n', ""))
+        self.assertIn("unknown", self.call("reproduce", "--list", self.paper)[0])
         out, _ = self.call("reproduce", "--list", "--json")
         papers = json.loads(out)
         self.assertEqual([(paper["number"], paper["name"]) for paper in papers],

@@ -100,6 +100,9 @@ std::string fixed(const std::optional<double>& value, int digits) {
 }
 
 std::string duration(double seconds) {
+  if (std::isnan(seconds)) {
+    return "unknown";
+  }
   if (seconds > 0 && seconds < 0.1) {
     return fixed(1000 * seconds, 0) + " ms";
   }

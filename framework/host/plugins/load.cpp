@@ -2,6 +2,7 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <boost/core/demangle.hpp>
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
 #include <cstdlib>
@@ -24,6 +25,20 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
+/// A message of the loader with the name that it ends with ("undefined symbol: _ZN…") as C++ has
+/// it.
+std::string with_readable_symbol(const std::string& text) {
+  const std::size_t at = text.rfind(" _Z");
+  if (at == text.npos) {
+    return text;
+  }
+  const std::string symbol = text.substr(at + 1);
+  const std::string name = boost::core::demangle(symbol.c_str());
+  return name == symbol ? text
+                        : text.substr(0, at + 1) + name + " (" + symbol +
+                              "): expected in one of the libraries that it is linked with";
+}
+
 /// Stays open to the end of the process: objects and exceptions of a plugin must never outlive its
 /// code. Messages name `file`.
 boost::dll::shared_library& open_for_ever(const fs::path& path, const fs::path& file) {
@@ -41,7 +56,7 @@ boost::dll::shared_library& open_for_ever(const fs::path& path, const fs::path& 
     if (text.starts_with(path.string() + ": ")) {
       text.erase(0, path.string().size() + 2);
     }
-    fail_to_use(file.string() + " cannot be loaded: " + text, of_system);
+    fail_to_use(file.string() + " cannot be loaded: " + with_readable_symbol(text), of_system);
   }
   return *open.emplace_back(std::move(library));
 }

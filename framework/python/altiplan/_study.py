@@ -13,7 +13,7 @@ import zlib
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Sequence, Union
 
-from . import _program, _values
+from . import _altiplan, _program, _values
 from ._error import Error
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ _FORMAT = 2
 _COLUMNS = ("run", "scenario", "pipeline", "repetition", "seed", "outcome", "message", "wall_time_s",
             "cpu_time_s", "peak_memory_mb", "key", "place", "session")
 _ROWS_AT_ONCE = 100_000
+_NONE = ("", "–")
+_INTERVAL = re.compile(r"\[(\S+(?: %)?), (\S+(?: %)?)\]")
 _WHOLE = re.compile(r"-?\d{1,3}(,\d{3})*|-?\d{1,15}")
 
 
@@ -133,16 +135,15 @@ class Study:
                 table[name] = values[:, i].astype(bool) if name == "solved" else values[:, i]
         return pandas.DataFrame(table)
 
-    def result(self, run: int) -> Dict[str, Any]:
-        """What result.json holds of the run with this id, as a dict. KeyError without such a run, or
-        where its process gave no result."""
+    def result(self, run: int) -> _altiplan.Result:
+        """The result of the run with this id; it has no warnings and notes. KeyError without such a
+        run, or where its process gave no result."""
         number = _values.whole(run, "run", 0, 2**63 - 1)
         with self._opened() as store:
             found = store.execute("SELECT result FROM results WHERE run = ?", (number,)).fetchone()
         if found is None or found[0] is None:
             raise KeyError(run)
-        result: Dict[str, Any] = json.loads(zlib.decompress(found[0]))
-        return result
+        return _altiplan.stored(zlib.decompress(found[0]).decode(), [])
 
     def report(self, out: _Path, *, times: bool = True) -> str:
         """Writes the report's folder, as `altiplan report` does; without `times`, equal results give
@@ -154,7 +155,8 @@ class Study:
     def tables(self) -> Dict[str, "pandas.DataFrame"]:
         """The tables of the report by name: `success`, `success-pairs`, `metrics`, `verdicts`,
         `pairs-METRIC`, `scenarios`, … Their values are as the report words them; a column of numbers
-        is one of numbers. Their numbers in full are in `figures`."""
+        is one of numbers, percentages become shares, and a column of intervals becomes two of
+        numbers, "COLUMN from" and "COLUMN to". Their numbers in full are in `figures`."""
         return self._frames("tables/")
 
     def figures(self) -> Dict[str, "pandas.DataFrame"]:
@@ -221,9 +223,23 @@ def _rows_of(name: str, text: str) -> List[List[str]]:
 def _frame(rows: List[List[str]]) -> "pandas.DataFrame":
     import pandas
 
-    columns = rows[0] if rows else []
-    return pandas.DataFrame({name: _column([row[i] for row in rows[1:]])
-                             for i, name in enumerate(columns)}, columns=columns)
+    columns: Dict[str, List[Any]] = {}
+    for i, name in enumerate(rows[0] if rows else []):
+        cells = [row[i] for row in rows[1:]]
+        parts = [_INTERVAL.fullmatch(cell) for cell in cells]
+        if any(parts) and all(part or cell in _NONE for part, cell in zip(parts, cells)):
+            for group, of in enumerate((" from", " to"), 1):
+                columns[name + of] = _column([part[group] if part else "" for part in parts])
+        else:
+            columns[name] = _column(cells)
+    return pandas.DataFrame(columns)
+
+
+def _number(cell: str) -> float:
+    """ValueError for a text."""
+    share = cell.endswith(" %")
+    number = float((cell[:-2] if share else cell).replace(",", ""))
+    return number / 100 if share else number
 
 
 def _column(cells: List[str]) -> List[Any]:
@@ -231,6 +247,6 @@ def _column(cells: List[str]) -> List[Any]:
     if all(_WHOLE.fullmatch(cell) for cell in cells):
         return [int(cell.replace(",", "")) for cell in cells]
     try:
-        return [float("nan") if cell in ("", "–") else float(cell.replace(",", "")) for cell in cells]
+        return [float("nan") if cell in _NONE else _number(cell) for cell in cells]
     except ValueError:
         return list(cells)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "altiplan/error.hpp"
 #include "host/base/install_root.hpp"
@@ -39,12 +40,14 @@ std::size_t PaperRuns::pairs_run(bool is_quick) const {
 }
 
 double Paper::cpu_s(const std::vector<const ReproducibleRow*>& selected, bool quick) const {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   // By study and pipeline the time of each entry of scenarios, "" for all of them.
   std::map<std::pair<fs::path, std::string>, std::map<std::string, double>> times;
   for (const ReproducibleRow* row : selected) {
     const PaperRuns& of = runs[row->runs];
     for (const std::string& pipeline : row->pipelines) {
-      const double ms = of.cpu_ms.at(pipeline);
+      const auto known = of.cpu_ms.find(pipeline);
+      const double ms = known == of.cpu_ms.end() ? kUnknown : known->second;
       times[{of.study, pipeline}][of.scenarios] = ms / 1000 * double(of.pairs_run(quick));
     }
   }
@@ -55,7 +58,8 @@ double Paper::cpu_s(const std::vector<const ReproducibleRow*>& selected, bool qu
     for (const auto& [scenarios, seconds] : by_scenarios) {
       (scenarios.empty() ? of_all : of_entries) += seconds;
     }
-    sum += std::max(of_all, of_entries);
+    const bool are_known = !std::isnan(of_all + of_entries);
+    sum += are_known ? std::max(of_all, of_entries) : kUnknown;
   }
   return sum;
 }

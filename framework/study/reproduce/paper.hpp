@@ -67,7 +67,8 @@ struct Paper {
   std::vector<PaperRuns> runs;
   std::vector<ReproducibleRow> rows;
 
-  /// Processor time of the runs that these rows need (s); each run counts once.
+  /// Processor time of the runs that these rows need (s), each run once; NaN where a time
+  /// is not declared.
   double cpu_s(const std::vector<const ReproducibleRow*>& selected, bool quick) const;
   std::vector<const ReproducibleRow*> all_rows() const;
 };

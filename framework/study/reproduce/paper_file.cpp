@@ -13,7 +13,7 @@ void RunsChoice::describe(Fields& f) {
       .greater_than(0)
       .at_most(1)
       .doc("share of the scenarios and repetitions that --quick runs");
-  f("cpu_ms", cpu_ms).doc("processor time of a run of each pipeline (ms), for --list");
+  f("cpu_ms", cpu_ms).doc("processor time of a run of each pipeline (ms), for --list, or none");
 }
 
 void PaperColumn::describe(Fields& f) {
