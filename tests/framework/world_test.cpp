@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <random>
 #include <thread>
 
 #include "altiplan/formats/iso_time.hpp"
@@ -386,6 +387,66 @@ TEST(Moving, APointHitsWhatItFliesThrough) {
   EXPECT_TRUE(hits(still, {500, 0, 0}, 0, {500, 0, 0}, 1, 0));
   EXPECT_FALSE(hits(still, {0, 9, 0}, 0, {900, 9, 0}, 60, 0)) << "touching is free";
   EXPECT_FALSE(hits(still, {0, 0, 0}, 0, {480, 0, 0}, 60, 0));
+}
+
+/// Answers of a world of very many layers, against those of each layer in turn.
+void expect_as_each(const World& world, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> place(-300, 1300);
+  std::uniform_real_distribution<double> step(-150, 150);
+  int blocked = 0;
+  for (int n = 0; n < 20'000; ++n) {
+    Vec3 a(place(random), place(random), place(random) / 4);
+    Vec3 b = n % 3 == 0 ? a : Vec3(a + Vec3(step(random), step(random), step(random) / 4));
+    if (n % 5 == 0) {
+      b.y() = a.y();
+    }
+    const double r = n % 4 == 0 ? 0 : std::abs(step(random)) / 10;
+    const Layer* first = nullptr;
+    double clearance = kInfinity;
+    std::vector<std::pair<std::string, double>> near;
+    for (const Layer& layer : world.layers()) {
+      first = first == nullptr && layer.environment->blocked(a, b, r) ? &layer : first;
+      clearance = std::min(clearance, layer.environment->clearance(a));
+      layer.environment->near(
+          a, r, [&](const Nearby& one) { near.emplace_back(layer.id, one.distance); });
+    }
+    ASSERT_EQ(world.blocked_by(a, b, r), first) << a.transpose() << " to " << b.transpose();
+    ASSERT_EQ(world.clearance(a), clearance) << a.transpose();
+    std::vector<std::pair<std::string, double>> found;
+    world.near(a, r, [&](const Layer& layer, const Nearby& one) {
+      found.emplace_back(layer.id, one.distance);
+    });
+    ASSERT_EQ(found, near);
+    blocked += first != nullptr;
+  }
+  EXPECT_GT(blocked, 2000);
+  EXPECT_LT(blocked, 18'000);
+}
+
+TEST(World, OfThousandsOfLayersAnswersAsEachOfThem) {
+  for (const int count : {17, 400}) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(count));
+    std::uniform_real_distribution<double> place(0, 1000);
+    std::uniform_real_distribution<double> size(1, count < 100 ? 120 : 30);
+    World world;
+    for (int n = 0; n < count; ++n) {
+      const Vec3 at(place(random), place(random), place(random) / 4);
+      const Vec3 half(size(random), size(random), size(random));
+      const Shape shape = n % 2 == 0 ? Shape(Sphere{at, half.x()})
+                                     : Shape(Cylinder{at.x(), at.y(), half.x(), at.z() - half.z(),
+                                                      n % 7 == 0 ? kInfinity : at.z() + half.z()});
+      world = std::move(world).with(shapes(std::to_string(n), {shape}));
+    }
+    world = std::move(world).with(shapes("nothing", {}));
+    world = std::move(world).with(
+        {"tile", "flat", std::make_shared<FlatTile>(Box{{0, 0, 0}, {500, 1000, 5}}, 5), true});
+    expect_as_each(world, random);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Vec3& nowhere : {Vec3(nan, 0, 0), Vec3(0, kInfinity, 0)}) {
+      EXPECT_EQ(world.clearance(nowhere), -kInfinity);
+      EXPECT_TRUE(world.blocked({0, 0, 0}, nowhere, 0));
+    }
+  }
 }
 }  // namespace
 }  // namespace altiplan::world_test

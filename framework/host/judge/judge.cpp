@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
+#include "host/base/shapes.hpp"
 #include "host/base/words.hpp"
 
 namespace altiplan::host {
@@ -12,7 +13,14 @@ namespace {
 
 constexpr const char* kLayerRule = "layer";
 
-/// Samples of the route at which a layer contradicts itself; contract 3 of Environment.
+bool is_built_in(const Layer& layer) {
+  const auto kinds = built_in_environments();
+  return std::any_of(kinds.begin(), kinds.end(),
+                     [&](const PluginEntry& kind) { return layer.plugin == kind.name; });
+}
+
+/// Samples of the route at which a layer contradicts itself; contract 3 of Environment. The
+/// program's own solids are not sampled: there may be thousands.
 void check_consistency(const Layer& layer, const Route& route, std::vector<Violation>& found) {
   constexpr int kSamples = 8;  // per leg; this checks layers, not the route
   const Environment& environment = *layer.environment;
@@ -103,6 +111,9 @@ CheckResult judge(const Route& route, const Request& request, const std::vector<
          "the route does not pass via point " + std::to_string(passed) + nearest});
   }
   for (const Layer& layer : request.world->layers()) {
+    if (is_built_in(layer)) {
+      continue;
+    }
     try {
       check_consistency(layer, route, result.violations);
     } catch (const std::exception& error) {

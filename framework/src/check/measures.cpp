@@ -124,20 +124,44 @@ void measure_turns(const Route& route, const Request& request, Measures& m) {
     m.min_radius_m = radius;
   }
 }
-/// The layers by their minimum clearance from a waypoint: where a near one is measured first, one
-/// query a leg shows that the others are further away.
+/// A layer lies at least so far from the route, by their boxes.
+double box_distance(const Environment& layer, const Route& route) {
+  const Box box = layer.bounds();
+  if (layer.over_approximation() > 0 || !box.is_bounded()) {
+    return 0;
+  }
+  double distance = kInfinity;
+  for (std::size_t i = 0; i < std::max<std::size_t>(route.leg_count(), 1); ++i) {
+    const Box leg = route.leg_count() > 0 ? route.leg(i).box() : leg_box(route[0], route[0]);
+    const Vec3 between = (leg.min - box.max).cwiseMax(box.min - leg.max).cwiseMax(0.0);
+    distance = std::min(distance, between.norm());
+  }
+  return distance;
+}
+
+/// The layers that may be nearest, by their minimum clearance from a waypoint: where a near one is
+/// measured first, one query a leg shows that the others are further away.
 std::vector<std::pair<double, const Environment*>> nearest_first(const World& world,
                                                                  const Route& route) {
+  constexpr double kRounding = 1e-6;
   std::vector<std::pair<double, const Environment*>> layers;
   for (const Layer& layer : world.layers()) {
-    double min_clearance = kInfinity;
-    for (std::size_t i = 0; i < route.size(); ++i) {
-      min_clearance = std::min(min_clearance, layer.environment->clearance(route[i]));
-    }
-    layers.emplace_back(min_clearance, layer.environment.get());
+    layers.emplace_back(box_distance(*layer.environment, route), layer.environment.get());
   }
-  std::stable_sort(layers.begin(), layers.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  const auto is_nearer = [](const auto& a, const auto& b) { return a.first < b.first; };
+  std::stable_sort(layers.begin(), layers.end(), is_nearer);
+  double nearest = kInfinity;
+  std::size_t count = 0;
+  for (; count < layers.size() && layers[count].first <= nearest + kRounding; ++count) {
+    double& clearance = layers[count].first;
+    clearance = kInfinity;
+    for (std::size_t i = 0; i < route.size(); ++i) {
+      clearance = std::min(clearance, layers[count].second->clearance(route[i]));
+    }
+    nearest = std::min(nearest, std::max(clearance, 0.0));
+  }
+  layers.resize(count);
+  std::stable_sort(layers.begin(), layers.end(), is_nearer);
   return layers;
 }
 }  // namespace

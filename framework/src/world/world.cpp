@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "altiplan/request.hpp"
 #include "cells_touching.hpp"
 #include "layer_answer.hpp"
+#include "layer_index.hpp"
 
 namespace altiplan {
 /// Grids of this snapshot, and those of an earlier one with the layers that they contain.
@@ -52,6 +54,19 @@ struct World::Cache {
   Grids<VoxelGrid> grids;
   Grids<DistanceField> distances;
   std::vector<Earlier> earlier;
+  /// Null for few layers, which are asked one after the other.
+  const LayerIndex* index(const std::vector<Layer>& layers) {
+    constexpr std::size_t kFew = 16;
+    if (layers.size() <= kFew) {
+      return nullptr;
+    }
+    std::call_once(is_indexed_, [&] { index_.emplace(layers); });
+    return &*index_;
+  }
+
+ private:
+  std::once_flag is_indexed_;
+  std::optional<LayerIndex> index_;
 };
 
 World::World() : cache_(std::make_shared<Cache>()) {}
@@ -161,16 +176,32 @@ Box World::bounds() const {
 }
 
 double World::clearance(const Vec3& p) const {
+  const auto clearance_of = [&](const Layer& layer) {
+    return answer_of(layer, [&](const Environment& asked) { return asked.clearance(p); });
+  };
+  const LayerIndex* index = is_finite(p) ? cache_->index(layers_) : nullptr;
+  if (index != nullptr) {
+    return index->min_clearance(
+        p, [&](int layer) { return clearance_of(layers_[std::size_t(layer)]); });
+  }
   double min_clearance = kInfinity;
   for (const Layer& layer : layers_) {
-    min_clearance =
-        std::min(min_clearance,
-                 answer_of(layer, [&](const Environment& asked) { return asked.clearance(p); }));
+    min_clearance = std::min(min_clearance, clearance_of(layer));
   }
   return min_clearance;
 }
 
 const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
+  const LayerIndex* index = is_finite(a) && is_finite(b) ? cache_->index(layers_) : nullptr;
+  if (index != nullptr) {
+    for (const int near : index->within(a, b, r)) {
+      const Layer& layer = layers_[std::size_t(near)];
+      if (answer_of(layer, [&](const Environment& asked) { return asked.blocked(a, b, r); })) {
+        return &layer;
+      }
+    }
+    return nullptr;
+  }
   for (const Layer& layer : layers_) {
     if (answer_of(layer, [&](const Environment& asked) { return asked.blocked(a, b, r); })) {
       return &layer;
@@ -181,12 +212,20 @@ const Layer* World::blocked_by(const Vec3& a, const Vec3& b, double r) const {
 
 void World::near(const Vec3& p, double reach, double ground_reach,
                  const std::function<void(const Layer&, const Nearby&)>& sink) const {
-  for (const Layer& layer : layers_) {
+  const auto ask = [&](const Layer& layer) {
     answer_of(layer, [&](const Environment& asked) {
       const double within = asked.ground() != nullptr ? ground_reach : reach;
       asked.near(p, within, [&](const Nearby& nearby) { sink(layer, nearby); });
     });
+  };
+  const LayerIndex* index = is_finite(p) ? cache_->index(layers_) : nullptr;
+  if (index != nullptr) {
+    for (const int layer : index->within(p, p, reach)) {
+      ask(layers_[std::size_t(layer)]);
+    }
+    return;
   }
+  std::for_each(layers_.begin(), layers_.end(), ask);
 }
 
 std::vector<Threat> World::threats() const {
