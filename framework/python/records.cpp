@@ -25,6 +25,8 @@ void add_metrics(py::module_& module) {
        {"min_ground_clearance_m", "Optional[float]", "minimum height above the ground (m)"},
        {"smoothness_rad", "Optional[float]", "sum of turns and changes of climb (radians)"},
        {"duration_s", "Optional[float]", "flying time by the vehicle's speed model (s)"},
+       {"time_s", "Optional[float]", "flying time with accelerations and stops (s)"},
+       {"energy_wh", "Optional[float]", "energy of that flight (Wh)"},
        {"plan_time_s", "Optional[float]",
         "search time of all plan attempts (s); of a whole run only"},
        {"smooth_time_s", "Optional[float]", "time of all smoothing (s); of a whole run only"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/config/scenario_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace altiplan::host {
@@ -205,12 +206,165 @@ void BodyEntry::describe(Fields& f) {
   f.check(yaw == Yaw::fixed || !fixed_deg, "expected yaw: fixed with fixed_deg");
 }
 
+namespace {
+void describe_mass(Fields& f, double& mass_kg) {
+  f("mass_kg", mass_kg).unit("kg").range(0.01, 1e5).required().doc("take-off mass");
+}
+
+void describe_efficiency(Fields& f, double& efficiency, const char* doc) {
+  f("efficiency", efficiency).range(0.01, 1).doc(doc);
+}
+
+constexpr const char* kOfClimbs = "mechanical power of a climb by what the battery gives for it";
+
+template <class Target>
+FieldRef describe_power(Fields& f, const char* key, Target& power_w) {
+  return f(key, power_w).unit("W").greater_than(0).at_most(1e7);
+}
+}  // namespace
+
+void LiuEntry::describe(Fields& f) {
+  describe_mass(f, mass_kg);
+  f("k1", k1).greater_than(0).doc("of the induced power");
+  f("k2", k2).unit("(kg/m)^0.5").greater_than(0).doc("of the induced power");
+  f("c1", c1).unit("(m/kg)^0.5").greater_than(0).doc("of level flight, k1 / k2");
+  f("c2", c2).unit("(m/kg)^0.5").at_least(0).doc("of the profile power");
+  f("c4", c4).unit("kg/m").at_least(0).doc("of the drag");
+  f("c5", c5).unit("kg/m").at_least(0).doc("of the lift of the body");
+  f("tilt_deg", tilt_deg).unit("deg").range(0, 60).doc("tilt in level flight");
+}
+
+void RotorsEntry::describe(Fields& f) {
+  describe_mass(f, mass_kg);
+  f("disc_m2", disc_m2).unit("m2").greater_than(0).required().doc("area of all rotors");
+  f("drag_m2", drag_m2).unit("m2").at_least(0).required().doc("drag coefficient times area");
+  f("induced", induced).range(1, 2).doc("induced power by that of an ideal rotor");
+  describe_efficiency(f, efficiency, "of motor, controller and propeller together");
+  f("profile_w", profile_w).unit("W").at_least(0).doc("power that turns the blades");
+}
+
+void HoverEntry::describe(Fields& f) {
+  describe_power(f, "power_w", power_w).required().doc("in hover; without cruise_w at every speed");
+  describe_power(f, "cruise_w", cruise_w).doc("in level flight at cruise_mps");
+  f("cruise_mps", cruise_mps)
+      .unit("m/s")
+      .greater_than(0)
+      .doc("airspeed of cruise_w, to which the power changes linearly; beyond it is not known");
+  describe_mass(f, mass_kg);
+  describe_efficiency(f, efficiency, kOfClimbs);
+  f.check(cruise_w.has_value() == cruise_mps.has_value(), "expected cruise_w with cruise_mps");
+}
+
+void AeroplaneEntry::describe(Fields& f) {
+  describe_mass(f, mass_kg);
+  f("wing_m2", wing_m2).unit("m2").greater_than(0).required().doc("area of the wing");
+  f("cd0", cd0).greater_than(0).required().doc("least drag coefficient");
+  f("k", k).greater_than(0).required().doc("drag coefficient by the square of the lift's");
+  f("cl_min_drag", cl_min_drag).range(-2, 2).doc("lift coefficient of the least drag");
+  f("cl_max", cl_max).range(0.1, 5).doc("lift coefficient at which it stalls");
+  describe_efficiency(f, efficiency, "of propeller, motor and controller together");
+}
+
+void LevelPowerEntry::describe(Fields& f) {
+  f("airspeed_mps", airspeed_mps).unit("m/s").at_least(0).required().doc("airspeed");
+  describe_power(f, "power_w", power_w).required().doc("at that speed");
+}
+
+void MeasuredEntry::describe(Fields& f) {
+  f("level", level)
+      .min_items(1)
+      .required()
+      .doc("by ascending airspeed; between them it is linear, beyond them not known");
+  describe_mass(f, mass_kg);
+  describe_efficiency(f, efficiency, kOfClimbs);
+  for (std::size_t i = 1; i < level.size(); ++i) {
+    f.check(level[i - 1].airspeed_mps < level[i].airspeed_mps,
+            "expected level in ascending order of airspeed_mps");
+  }
+}
+
+void EnergyEntry::describe(Fields& f) {
+  f("capacity_wh", capacity_wh)
+      .unit("Wh")
+      .greater_than(0)
+      .doc("of the battery: no route is accepted that takes more of it than may be used");
+  f("usable", usable).range(0.01, 1).doc("share of the capacity that can be drawn (age, cold)");
+  f("reserve", reserve).range(0, 0.99).doc("share of what can be drawn that a route leaves");
+  f("multirotor", multirotor).doc("power by Liu, Sengupta and Kurek 2017");
+  f("rotors", rotors).doc("alternatively: a multirotor's power by momentum theory");
+  f("hover", hover).doc("alternatively: a multirotor's power as measured in hover");
+  f("aeroplane", aeroplane).doc("alternatively: an aeroplane's power by its drag polar");
+  f("measured", measured).doc("alternatively: power measured at several airspeeds");
+  f.check(int(multirotor.has_value()) + int(rotors.has_value()) + int(hover.has_value()) +
+                  int(aeroplane.has_value()) + int(measured.has_value()) ==
+              1,
+          "expected one of multirotor, rotors, hover, aeroplane, measured");
+}
+
+bool VehicleEntry::has_wing() const {
+  return wing || performance == Performance::arduplane || performance == Performance::px4_fw;
+}
+
 VehicleType VehicleEntry::flown_as() const {
   if (type != VehicleType::by_wing) {
     return type;
   }
-  return wing ? VehicleType::plane : VehicleType::copter;
+  return has_wing() ? VehicleType::plane : VehicleType::copter;
 }
+
+namespace {
+/// How fast it flies, climbs, speeds up.
+void describe_performance(Fields& f, VehicleEntry& v) {
+  f("performance", v.performance,
+    {{"none", Performance::none},
+     {"arducopter", Performance::arducopter},
+     {"arduplane", Performance::arduplane},
+     {"px4_mc", Performance::px4_mc},
+     {"px4_fw", Performance::px4_fw}})
+      .doc("an autopilot by whose default parameters it flies, but for what is given here");
+  f("speed_mps", v.speed_mps)
+      .unit("m/s")
+      .greater_than(0)
+      .doc("speed away from obstacles; default: the performance's, or 15");
+  f("climb_mps", v.climb_mps)
+      .unit("m/s")
+      .range(0.01, 1000)
+      .doc("greatest rate of climb; default: the performance's, or unlimited");
+  f("sink_mps", v.sink_mps).unit("m/s").range(0.01, 1000).doc("greatest rate of descent; likewise");
+  f("acceleration_mps2", v.acceleration_mps2)
+      .unit("m/s2")
+      .range(0.01, 1000)
+      .doc(
+          "along the route, from rest to rest; default: the performance's, or speeds change at "
+          "once");
+  f("jerk_mps3", v.jerk_mps3)
+      .unit("m/s3")
+      .range(0.01, 1e4)
+      .doc("of changes of speed; default: the performance's, or unlimited");
+  f("jerk_time_s", v.jerk_time_s)
+      .unit("s")
+      .range(0, 100)
+      .doc("in which that jerk sets in and ends; default: the performance's, or 0");
+  f("corner_radius_m", v.corner_radius_m)
+      .unit("m")
+      .range(0, 1e4)
+      .doc(
+          "passes waypoints on an arc that begins so far before them; default: the performance's, "
+          "or it stops at each");
+  f("energy", v.energy).doc("its power and its battery");
+  const bool has_wing = v.has_wing();
+  f.check(
+      !has_wing || (!v.acceleration_mps2 && !v.jerk_mps3 && !v.jerk_time_s && !v.corner_radius_m),
+      "an aeroplane keeps its airspeed: remove acceleration_mps2, jerk_mps3, jerk_time_s and "
+      "corner_radius_m");
+  const bool accelerates = v.acceleration_mps2 || v.performance != Performance::none;
+  f.check(accelerates || (!v.jerk_mps3 && !v.jerk_time_s && !v.corner_radius_m),
+          "expected acceleration_mps2 with jerk_mps3, jerk_time_s and corner_radius_m");
+  f.check(!v.energy || !v.energy->aeroplane || has_wing, "expected wing with energy.aeroplane");
+  f.check(!v.energy || v.energy->aeroplane || v.energy->measured || !has_wing,
+          "expected energy.aeroplane or energy.measured with a wing");
+}
+}  // namespace
 
 void VehicleEntry::describe(Fields& f) {
   f("type", type,
@@ -222,7 +376,7 @@ void VehicleEntry::describe(Fields& f) {
           "how it takes off and lands in exported missions; by_wing: plane with a wing, else "
           "copter");
   f("radius_m", radius_m).unit("m").at_least(0).doc("radius of the vehicle's safety sphere");
-  f("speed_mps", speed_mps).unit("m/s").greater_than(0).doc("speed away from obstacles");
+  describe_performance(f, *this);
   f("sensing_m", sensing_m)
       .unit("m")
       .greater_than(0)
@@ -234,9 +388,13 @@ void VehicleEntry::describe(Fields& f) {
   f("body", body).doc("a body instead of the sphere: it is checked in its attitude along all legs");
   f.check(!body || radius_m == 0, "expected radius_m or body, not both");
   f("wing", wing).doc("an aeroplane: it turns by banking at a constant airspeed");
-  f.check(!wing || type != VehicleType::copter, "a copter has no wing: expected plane or vtol");
-  f.check(!wing || !turns_on_the_spot, "an aeroplane cannot turn on the spot");
-  f.check(!wing || speed_near.empty(), "an aeroplane has one airspeed: remove speed_near");
+  const bool is_wing = has_wing();
+  f.check(!is_wing || type != VehicleType::copter, "a copter has no wing: expected plane or vtol");
+  f.check(!is_wing || !turns_on_the_spot, "an aeroplane cannot turn on the spot");
+  f.check(!is_wing || speed_near.empty(), "an aeroplane has one airspeed: remove speed_near");
+  const bool is_copter =
+      performance == Performance::arducopter || performance == Performance::px4_mc;
+  f.check(!wing || !is_copter, "a copter's performance has no wing: expected arduplane or px4_fw");
   f("speed_near", speed_near).doc("speed by distance to the nearest obstacle's edge");
   for (std::size_t i = 1; i < speed_near.size(); ++i) {
     f.check(speed_near[i - 1].within_m < speed_near[i].within_m,
@@ -328,6 +486,13 @@ void ScenarioFile::describe(Fields& f) {
   f("via", via).doc("points to pass, in order");
   f("goal", goal).required().doc("end of the route");
   f("moving", moving).doc("moving obstacles");
+  const bool avoids = std::any_of(moving.begin(), moving.end(), [](const MovingEntry& obstacle) {
+    return obstacle.known.value_or(false);
+  });
+  f.check(!avoids || !(vehicle.acceleration_mps2 || vehicle.performance != Performance::none) ||
+              vehicle.has_wing(),
+          "among moving obstacles with known: true routes are judged at speeds that change at "
+          "once: remove vehicle.acceleration_mps2, or a copter's vehicle.performance");
   f("events", events).doc("changes during the flight");
   f("constraints", constraints).doc("constraints that apply to every pipeline");
   f("objective", objective)

@@ -145,19 +145,105 @@ struct BodyEntry {
   void describe(Fields& f);
 };
 
+/// A multirotor's power by the terms of Liu, Sengupta and Kurek 2017.
+struct LiuEntry {
+  double mass_kg = 0;
+  double k1 = 0.8554;
+  double k2 = 0.3051;
+  double c1 = 2.8037;
+  double c2 = 0.3177;
+  double c4 = 0.0296;
+  double c5 = 0.0279;
+  double tilt_deg = 10;
+  void describe(Fields& f);
+};
+
+/// The same by momentum theory.
+struct RotorsEntry {
+  double mass_kg = 0;
+  double disc_m2 = 0;
+  double drag_m2 = 0;
+  double induced = 1.15;
+  double efficiency = 0.6;
+  double profile_w = 0;
+  void describe(Fields& f);
+};
+
+/// The same as measured in hover, and perhaps at a speed.
+struct HoverEntry {
+  double power_w = 0;
+  std::optional<double> cruise_w;
+  std::optional<double> cruise_mps;
+  double mass_kg = 0;
+  double efficiency = 0.5;
+  void describe(Fields& f);
+};
+
+/// An aeroplane's power by its drag polar.
+struct AeroplaneEntry {
+  double mass_kg = 0;
+  double wing_m2 = 0;
+  double cd0 = 0;
+  double k = 0;
+  double cl_min_drag = 0;
+  double cl_max = 1.2;
+  double efficiency = 0.5;
+  void describe(Fields& f);
+};
+
+struct LevelPowerEntry {
+  double airspeed_mps = 0;
+  double power_w = 0;
+  void describe(Fields& f);
+};
+
+/// Power measured in level flight.
+struct MeasuredEntry {
+  std::vector<LevelPowerEntry> level;
+  double mass_kg = 0;
+  double efficiency = 0.5;
+  void describe(Fields& f);
+};
+
+/// The battery, and one of five models of power.
+struct EnergyEntry {
+  std::optional<double> capacity_wh;
+  double usable = 1;
+  double reserve = 0.2;
+  std::optional<LiuEntry> multirotor;
+  std::optional<RotorsEntry> rotors;
+  std::optional<HoverEntry> hover;
+  std::optional<AeroplaneEntry> aeroplane;
+  std::optional<MeasuredEntry> measured;
+  void describe(Fields& f);
+};
+
+/// An autopilot whose defaults a vehicle has.
+enum class Performance { none, arducopter, arduplane, px4_mc, px4_fw };
+
 /// What an autopilot flies, which says how it takes off and lands.
 enum class VehicleType { by_wing, copter, plane, vtol };
 
 struct VehicleEntry {
   VehicleType type = VehicleType::by_wing;
   double radius_m = 0;
-  double speed_mps = 15;
+  Performance performance = Performance::none;
+  std::optional<double> speed_mps;
+  std::optional<double> climb_mps;
+  std::optional<double> sink_mps;
+  std::optional<double> acceleration_mps2;
+  std::optional<double> jerk_mps3;
+  std::optional<double> jerk_time_s;
+  std::optional<double> corner_radius_m;
+  std::optional<EnergyEntry> energy;
   std::optional<double> sensing_m;
   std::vector<SpeedNearEntry> speed_near;
   bool turns_on_the_spot = false;
   std::optional<WingEntry> wing;
   std::optional<BodyEntry> body;
   void describe(Fields& f);
+  /// True with a wing, given or of the performance.
+  bool has_wing() const;
   /// The given type; else plane with a wing, copter without.
   VehicleType flown_as() const;
 };

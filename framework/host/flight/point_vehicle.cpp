@@ -35,7 +35,9 @@ FlownTo PointVehicle::follow(RouteAhead& route, const State& from, double durati
       route.progress = route.path.end_of_leg(route.progress);
       continue;
     }
-    const double v = request_->vehicle.speed_at(request_->world->clearance(now.position));
+    const double speed = request_->vehicle.speed_at(request_->world->clearance(now.position));
+    const double climbs_s = request_->vehicle.climb_time(way.z());
+    const double v = climbs_s * speed > to_next ? to_next / climbs_s : speed;
     const bool whole = to_next - v * left <= kMinRest;
     const double run = whole ? to_next : v * left;
     route.progress = whole ? route.path.end_of_leg(route.progress) : route.progress + run;

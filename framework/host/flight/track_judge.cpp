@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "altiplan/energy.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/flown_route.hpp"
 #include "host/base/words.hpp"
 #include "host/flight/flight_world.hpp"
 
@@ -127,7 +129,7 @@ class Replay {
   void take_measures(const Track& track, const Polyline& places) {
     verdict_.measures = measure(places, request_);
     verdict_.measures.min_radius_m = track_radius(places, request_.vehicle).radius_m;
-    verdict_.measures.duration_s = track.back().first - track.front().first;
+    take_times(verdict_.measures, track, request_);
     if (const double separation = world_.separation().distance; std::isfinite(separation)) {
       verdict_.min_separation_m = separation;
     }
@@ -210,6 +212,12 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
     found.push_back({"route_length", 0, total, request.limits.max_route_length,
                      "the flight is longer than the maximum route length", "", "m"});
   }
+  if (request.vehicle.energy != nullptr) {
+    if (const auto violation = energy_violation(
+            track_energy(track, request, *request.vehicle.energy->power), request.vehicle)) {
+      found.push_back(*violation);
+    }
+  }
   for (const NamedConstraint& named : request.constraints) {
     for (Violation& violation : named.constraint->violations(places, request)) {
       violation.constraint = named.name;
@@ -217,6 +225,14 @@ std::vector<Violation> whole_track_violations(const Track& track, const Request&
     }
   }
   return found;
+}
+
+void take_times(Measures& measures, const Track& track, const Request& request) {
+  measures.duration_s = track.back().first - track.front().first;
+  measures.time_s = measures.duration_s;
+  if (request.vehicle.energy != nullptr) {
+    measures.energy_wh = track_energy(track, request, *request.vehicle.energy->power);
+  }
 }
 
 Request as_telemetry(Request request) {

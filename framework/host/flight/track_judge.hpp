@@ -30,6 +30,9 @@ TrackVerdict judge_track(const Track& track, const FlightSetup& setup);
 /// The positions of a track.
 Polyline places_of(const Track& track);
 
+/// Measures that follow from the times of a track, not from its line.
+void take_times(Measures& measures, const Track& track, const Request& request);
+
 /// The tightest turn of a track; none if it is straight.
 struct TrackRadius {
   std::optional<double> radius_m;

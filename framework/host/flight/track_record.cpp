@@ -61,7 +61,7 @@ void Flight::finish() {
   const Polyline track = places_of(result_.track);
   result_.measures = measure(track, truth_request_);
   result_.measures.min_radius_m = track_radius(track, request_.vehicle).radius_m;
-  result_.measures.duration_s = state_.time_s - setup_.request.start.time_s;
+  take_times(result_.measures, result_.track, truth_request_);
   if (const double separation = world_.separation().distance; std::isfinite(separation)) {
     result_.min_separation_m = separation;
   }

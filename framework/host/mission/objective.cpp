@@ -29,6 +29,13 @@ class WeightedSum final : public Objective {
     }
     return sum;
   }
+  double do_joining(const Route& route, const Request& request) const override {
+    double sum = 0;
+    for (const Term& term : terms_) {
+      sum += term.weight * term.objective->joining(route, request);
+    }
+    return sum;
+  }
   double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
     double sum = 0;
     for (const Term& term : terms_) {
@@ -136,10 +143,8 @@ std::vector<Metric> metrics_of(const Config& config, const Site& site,
 MetricValues measured(const Route& route, const Request& request,
                       const std::vector<Metric>& metrics) {
   MetricValues values;
-  Request by = request;
   for (const Metric& metric : metrics) {
-    by.objective = metric.of;
-    values.emplace_back(metric.name, cost_of(route, by));
+    values.emplace_back(metric.name, metric.of->total(route, request));
   }
   return values;
 }

@@ -4,8 +4,11 @@
 #include <algorithm>
 
 #include "altiplan/body.hpp"
+#include "altiplan/energy.hpp"
 #include "altiplan/environment.hpp"
+#include "host/autopilot/parameters.hpp"
 #include "host/config/config_check.hpp"
+#include "host/energy/flight_power.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -102,6 +105,91 @@ std::shared_ptr<const Body> body_of(const BodyEntry& entry, const Value& where,
   body->pitches = entry.pitch == BodyEntry::Pitch::along_route;
   return body;
 }
+
+std::shared_ptr<const Power> power_of(const EnergyEntry& entry) {
+  if (const auto& liu = entry.multirotor) {
+    LiuPower power;
+    power.mass_kg = liu->mass_kg;
+    power.k1 = liu->k1;
+    power.k2 = liu->k2;
+    power.c1 = liu->c1;
+    power.c2 = liu->c2;
+    power.c4 = liu->c4;
+    power.c5 = liu->c5;
+    power.tilt_deg = liu->tilt_deg;
+    return std::make_shared<LiuPower>(power);
+  }
+  if (const auto& rotors = entry.rotors) {
+    MomentumPower power;
+    power.mass_kg = rotors->mass_kg;
+    power.disc_m2 = rotors->disc_m2;
+    power.drag_m2 = rotors->drag_m2;
+    power.induced = rotors->induced;
+    power.efficiency = rotors->efficiency;
+    power.profile_w = rotors->profile_w;
+    return std::make_shared<MomentumPower>(power);
+  }
+  if (const auto& wing = entry.aeroplane) {
+    PolarPower power;
+    power.mass_kg = wing->mass_kg;
+    power.wing_m2 = wing->wing_m2;
+    power.cd0 = wing->cd0;
+    power.k = wing->k;
+    power.cl_of_least_drag = wing->cl_min_drag;
+    power.efficiency = wing->efficiency;
+    power.cl_max = wing->cl_max;
+    return std::make_shared<PolarPower>(power);
+  }
+  MeasuredPower power;
+  if (const auto& hover = entry.hover) {
+    constexpr double kAnySpeed = 1e9;
+    power.level = {
+        {0, hover->power_w},
+        {hover->cruise_mps.value_or(kAnySpeed), hover->cruise_w.value_or(hover->power_w)}};
+    power.mass_kg = hover->mass_kg;
+    power.efficiency = hover->efficiency;
+  } else {
+    for (const LevelPowerEntry& level : entry.measured->level) {
+      power.level.push_back({level.airspeed_mps, level.power_w});
+    }
+    power.mass_kg = entry.measured->mass_kg;
+    power.efficiency = entry.measured->efficiency;
+  }
+  return std::make_shared<MeasuredPower>(power);
+}
+
+/// What a performance says, where nothing else is given.
+void take_defaults(Performance performance, Vehicle& vehicle) {
+  using formats::Airframe;
+  using formats::Firmware;
+  const bool is_px4 = performance == Performance::px4_mc || performance == Performance::px4_fw;
+  const bool is_copter =
+      performance == Performance::px4_mc || performance == Performance::arducopter;
+  const ParameterFile none;
+  const Parameters value({is_px4 ? Firmware::px4 : Firmware::ardupilot,
+                          is_copter ? Airframe::copter : Airframe::plane},
+                         none);
+  const auto of = [&](const char* px4, const char* ardupilot) {
+    return value(is_px4 ? px4 : ardupilot);
+  };
+  if (!is_copter) {
+    vehicle.speed_mps = of("FW_AIRSPD_TRIM", "AIRSPEED_CRUISE");
+    vehicle.climb_mps = of("FW_T_CLMB_R_SP", "TECS_CLMB_MAX");
+    vehicle.sink_mps = of("FW_T_SINK_R_SP", "TECS_SINK_MAX");
+    vehicle.wing = {vehicle.speed_mps, radians(of("FW_R_LIM", "ROLL_LIMIT_DEG")), kPi / 2, kPi / 2};
+    return;
+  }
+  vehicle.speed_mps = of("MPC_XY_CRUISE", "WP_SPD");
+  vehicle.climb_mps = of("MPC_Z_V_AUTO_UP", "WP_SPD_UP");
+  vehicle.sink_mps = of("MPC_Z_V_AUTO_DN", "WP_SPD_DN");
+  vehicle.acceleration.mps2 = of("MPC_ACC_HOR", "WP_ACC");
+  vehicle.acceleration.jerk_mps3 = of("MPC_JERK_AUTO", "WP_JERK");
+  // ArduPilot's jerk follows the attitude, whose time constant it takes for 0.1 s at least; PX4
+  // passes corners at the speed of half of its radius.
+  vehicle.acceleration.jerk_time_s = is_px4 ? 0 : 2 * std::max(value("ATC_INPUT_TC"), 0.1);
+  vehicle.acceleration.corner_radius_m =
+      is_px4 ? value("MPC_XY_TRAJ_P") * value("NAV_ACC_RAD") : value("WP_RADIUS_M");
+}
 }  // namespace
 
 Vehicle vehicle_of(const VehicleEntry& entry, const Value* where, Registry& registry) {
@@ -110,7 +198,22 @@ Vehicle vehicle_of(const VehicleEntry& entry, const Value* where, Registry& regi
     vehicle.body = body_of(*entry.body, *where->find("body"), registry);
   }
   vehicle.radius_m = vehicle.body != nullptr ? vehicle.body->inner_m() : entry.radius_m;
-  vehicle.speed_mps = entry.speed_mps;
+  vehicle.speed_mps = 15;
+  if (entry.performance != Performance::none) {
+    take_defaults(entry.performance, vehicle);
+  }
+  const auto take = [](double& value, const std::optional<double>& given) {
+    value = given.value_or(value);
+  };
+  take(vehicle.speed_mps, entry.speed_mps);
+  take(vehicle.climb_mps, entry.climb_mps);
+  take(vehicle.sink_mps, entry.sink_mps);
+  take(vehicle.acceleration.mps2, entry.acceleration_mps2);
+  take(vehicle.acceleration.jerk_mps3, entry.jerk_mps3);
+  take(vehicle.acceleration.jerk_time_s, entry.jerk_time_s);
+  if (entry.corner_radius_m) {
+    vehicle.acceleration.corner_radius_m = entry.corner_radius_m;
+  }
   vehicle.sensing_m = entry.sensing_m.value_or(kInfinity);
   vehicle.turns_on_the_spot = entry.turns_on_the_spot;
   for (const SpeedNearEntry& near : entry.speed_near) {
@@ -120,6 +223,17 @@ Vehicle vehicle_of(const VehicleEntry& entry, const Value* where, Registry& regi
     vehicle.speed_mps = wing->airspeed_mps;
     vehicle.wing = {vehicle.speed_mps, radians(wing->bank_deg), radians(wing->climb_deg),
                     radians(wing->sink_deg), radians(wing->roll_rate_dps)};
+  }
+  if (vehicle.wing) {  // which does not slow down to climb
+    Wing& wing = *vehicle.wing;
+    wing.airspeed_mps = vehicle.speed_mps;
+    wing.climb = std::min(wing.climb, std::atan(vehicle.climb_mps / wing.airspeed_mps));
+    wing.sink = std::min(wing.sink, std::atan(vehicle.sink_mps / wing.airspeed_mps));
+  }
+  if (const auto& energy = entry.energy) {
+    vehicle.energy =
+        std::make_shared<Energy>(Energy{power_of(*energy), energy->capacity_wh.value_or(kInfinity),
+                                        energy->usable, energy->reserve});
   }
   return vehicle;
 }

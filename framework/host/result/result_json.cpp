@@ -238,7 +238,9 @@ Json to_json(const Measures& m) {
           {"min_clearance_m", number(m.min_clearance_m)},
           {"min_ground_clearance_m", number(m.min_ground_clearance_m)},
           {"smoothness_rad", number(m.smoothness_rad)},
-          {"duration_s", number(m.duration_s)}};
+          {"duration_s", number(m.duration_s)},
+          {"time_s", number(m.time_s)},
+          {"energy_wh", number(m.energy_wh)}};
 }
 
 Json to_json(const Measures& measures, const MetricValues& own) {

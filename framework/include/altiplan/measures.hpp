@@ -19,6 +19,8 @@ struct Measures {
   std::optional<double> min_ground_clearance_m;  ///< vertical
   std::optional<double> smoothness_rad;  ///< sum of turn and climb changes (paper 003, eq. 9)
   std::optional<double> duration_s;      ///< at the vehicle's speed profile
+  std::optional<double> time_s;          ///< as flown: with acceleration (flown_route.hpp)
+  std::optional<double> energy_wh;       ///< as flown; empty where it is not known
 };
 
 /// Of turns, clearances are those of chords within 1e-4 m.

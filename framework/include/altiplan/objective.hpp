@@ -33,6 +33,11 @@ class ALTIPLAN_API Objective {
   double cost(const Leg& leg, double time_s, const Request& request) const;
   /// Lower bound of the cost of all routes between two places, at any time. Throws likewise.
   double bound(const Vec3& from, const Vec3& to, const Request& request) const;
+  /// What it costs to join the legs of a route (stops at corners). Throws likewise.
+  double joining(const Route& route, const Request& request) const;
+  /// Cost of a whole route from the start, for limits and metrics: those of its legs, and of
+  /// joining them.
+  double total(const Route& route, const Request& request) const;
   /// Unit of costs ("m"), for people; "" without one.
   std::string unit() const { return do_unit(); }
   Traits traits() const { return do_traits(); }
@@ -41,6 +46,8 @@ class ALTIPLAN_API Objective {
   virtual double do_cost(const Leg& leg, double time_s, const Request& request) const = 0;
   virtual double do_bound(const Vec3& from, const Vec3& to, const Request& request) const = 0;
   virtual std::string do_unit() const = 0;
+  /// What a route costs beyond the sum of its legs' costs, at least 0. Default: 0.
+  virtual double do_joining(const Route& route, const Request& request) const;
   /// Default: depends on the place alone.
   virtual Traits do_traits() const;
 };

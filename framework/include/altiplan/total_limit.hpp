@@ -22,7 +22,9 @@ class ALTIPLAN_API TotalLimit : public Constraint {
   std::vector<Violation> violations_of(const Route& route, const Request& request) const;
 
  private:
+  std::vector<Violation> violations_of(double total) const;
   bool do_admits_all() const override { return true; }
+  /// Of a track, at whose points nothing stops: the legs alone.
   std::vector<Violation> do_violations(const Polyline& route,
                                        const Request& request) const override;
 

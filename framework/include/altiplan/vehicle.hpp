@@ -10,6 +10,7 @@
 namespace altiplan {
 
 struct Body;
+struct Energy;
 
 /// Speed of the vehicle within `within_m` of an obstacle's surface.
 struct SpeedNear {
@@ -29,6 +30,18 @@ struct ALTIPLAN_API Wing {
   double turn_radius() const;
 };
 
+/// How a vehicle that is no aeroplane speeds up and slows down along a route: from rest at its
+/// start to rest at its end.
+struct Acceleration {
+  double mps2 = kInfinity;       ///< infinite: speeds change at once
+  double jerk_mps3 = kInfinity;  ///< of each change of speed
+  double jerk_time_s = 0;        ///< in which the jerk itself sets in and ends (ArduPilot's)
+  /// How near it passes a waypoint at which it turns, without a stop; none: it stops at each.
+  std::optional<double> corner_radius_m{};
+
+  bool takes_time() const { return std::isfinite(mps2); }
+};
+
 /// A sphere, or a body that contains it, whose speed depends on its distance to the nearest
 /// obstacle.
 struct ALTIPLAN_API Vehicle {
@@ -39,11 +52,19 @@ struct ALTIPLAN_API Vehicle {
   bool turns_on_the_spot = false;      ///< to any heading, when climbing or descending vertically
   std::optional<Wing> wing{};          ///< of an aeroplane; speed_mps is then its airspeed
   std::shared_ptr<const Body> body{};  ///< null: the sphere is all
+  double climb_mps = kInfinity;        ///< greatest rate of climb: steeper legs are flown slowly
+  double sink_mps = kInfinity;
+  Acceleration acceleration{};             ///< of other vehicles than aeroplanes
+  std::shared_ptr<const Energy> energy{};  ///< null: not known
 
   /// No part of the vehicle is farther from its reference point, metres.
   double reach_m() const;
   /// Speed at a distance to the nearest obstacle (for example paper 002, eq. 6).
   double speed_at(double distance_m) const;
+  /// Seconds that a change of height takes at least.
+  double climb_time(double rise_m) const {
+    return rise_m > 0 ? rise_m / climb_mps : -rise_m / sink_mps;
+  }
 };
 
 /// Position and velocity of the vehicle; a velocity of zero means that no heading is given. A route

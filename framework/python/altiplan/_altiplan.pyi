@@ -40,6 +40,12 @@ class Metrics:
     def duration_s(self) -> Optional[float]:
         """flying time by the vehicle's speed model (s)"""
     @property
+    def time_s(self) -> Optional[float]:
+        """flying time with accelerations and stops (s)"""
+    @property
+    def energy_wh(self) -> Optional[float]:
+        """energy of that flight (Wh)"""
+    @property
     def plan_time_s(self) -> Optional[float]:
         """search time of all plan attempts (s); of a whole run only"""
     @property

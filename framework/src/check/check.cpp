@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "altiplan/energy.hpp"
+#include "altiplan/flown_route.hpp"
 #include "altiplan/total_limit.hpp"
 #include "leg_judge.hpp"
 #include "moving.hpp"
@@ -164,6 +166,12 @@ CheckResult check(const Route& route, const Request& request) {
   if (total > request.limits.max_route_length + kLengthTolerance) {
     found.push_back(beyond("route_length", 0, total, request.limits.max_route_length, "m",
                            "the route's length", false));
+  }
+  if (request.vehicle.energy != nullptr) {
+    if (const auto violation = energy_violation(
+            flown_energy(route, request, *request.vehicle.energy->power), request.vehicle)) {
+      found.push_back(*violation);
+    }
   }
   std::vector<std::size_t> leg_of;
   const Polyline points = route.is_straight() ? route.waypoints() : chords_of(route, leg_of);

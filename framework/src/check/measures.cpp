@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "altiplan/energy.hpp"
+#include "altiplan/flown_route.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/nearest_place.hpp"
 #include "deepest_place.hpp"
@@ -62,12 +64,15 @@ double leg_duration(const Leg& leg, const Request& request) {
     return leg.hold_s;
   }
   if (leg.turns()) {
-    return leg.air_length() / request.air_speed();
+    return std::max(leg.air_length() / request.air_speed(),
+                    request.vehicle.climb_time(leg.to.z() - leg.from.z()));
   }
-  if (request.vehicle.wing || !request.wind.is_calm()) {
-    return flight_time(leg.from, leg.to, request.air_speed(), request.wind);
-  }
-  return leg_duration(*request.world, request.vehicle, leg.from, leg.to);
+  double seconds = 0;
+  in_uniform_motion(leg, 0, request, [&](const Vec3&, double, const Vec3&, double until_s) {
+    seconds = until_s;
+    return true;
+  });
+  return seconds;
 }
 
 namespace {
@@ -89,6 +94,10 @@ void measure_legs(const Route& route, const Request& request, Measures& m) {
   }
   m.max_climb_deg = degrees(climb);
   m.duration_s = duration;
+  m.time_s = flown_time(route, request);
+  if (request.vehicle.energy != nullptr) {
+    m.energy_wh = flown_energy(route, request, *request.vehicle.energy->power);
+  }
 }
 
 /// Corners between legs, and turns.

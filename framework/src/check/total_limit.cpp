@@ -12,10 +12,7 @@ namespace altiplan {
 TotalLimit::TotalLimit(std::shared_ptr<const Objective> of, double maximum)
     : of_(std::move(of)), maximum_(maximum) {}
 
-std::vector<Violation> TotalLimit::violations_of(const Route& route, const Request& request) const {
-  Request by = request;
-  by.objective = of_;
-  const double total = cost_of(route, by);
+std::vector<Violation> TotalLimit::violations_of(double total) const {
   if (!costs_more(total, maximum_)) {
     return {};
   }
@@ -26,8 +23,14 @@ std::vector<Violation> TotalLimit::violations_of(const Route& route, const Reque
            "", of_->unit()}};
 }
 
+std::vector<Violation> TotalLimit::violations_of(const Route& route, const Request& request) const {
+  return violations_of(of_->total(route, request));
+}
+
 std::vector<Violation> TotalLimit::do_violations(const Polyline& route,
                                                  const Request& request) const {
-  return violations_of(route, request);
+  Request by = request;
+  by.objective = of_;
+  return violations_of(cost_of(Route(route), by));
 }
 }  // namespace altiplan

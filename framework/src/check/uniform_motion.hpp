@@ -8,13 +8,15 @@
 namespace altiplan {
 
 /// Calls `use(begin, end, seconds)`, in metres along the straight leg a–b, for each part that the
-/// vehicle flies at one speed, by its speed profile.
+/// vehicle flies at one speed, by its speed profile, or as fast as its rates of climb and sink
+/// allow.
 template <class Use>
 void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, const Vec3& b,
                    const Use& use) {
   const double total = (b - a).norm();
+  const double changes_height_s = vehicle.climb_time(b.z() - a.z());
   if (vehicle.speed_near.empty()) {
-    use(0, total, total / vehicle.speed_mps);
+    use(0, total, std::max(total / vehicle.speed_mps, changes_height_s));
     return;
   }
   // Clearance changes by at most a metre per metre: the speed is constant until a threshold can be
@@ -28,7 +30,8 @@ void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, co
       step = std::min(step, std::abs(clearance - near.within_m));
     }
     step = std::min(std::max(step, kMinStep), total - along);
-    use(along, along + step, step / vehicle.speed_at(clearance));
+    use(along, along + step,
+        std::max(step / vehicle.speed_at(clearance), step / total * changes_height_s));
     along += step;
   }
 }
@@ -54,8 +57,9 @@ bool in_uniform_motion(const Leg& leg, double time_s, const Request& request, co
     ends.push_back(1);
     for (const double end : ends) {
       part(begin, end,
-           flight_time(leg.from + begin * way, leg.from + end * way, request.air_speed(),
-                       request.wind));
+           std::max(flight_time(leg.from + begin * way, leg.from + end * way, request.air_speed(),
+                                request.wind),
+                    request.vehicle.climb_time((end - begin) * way.z())));
       begin = end;
     }
     return goes_on;

@@ -19,6 +19,18 @@ double at_least_zero(double value, const char* what) {
 }
 
 std::string objective_text() { return "the objective"; }
+
+double sum_of(const Objective& objective, const Route& route, const Request& request) {
+  const bool in_time = objective.traits().time;
+  double cost = 0;
+  double time_s = 0;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    cost += objective.cost(leg, time_s, request);
+    time_s += in_time ? leg_duration(leg, request) : 0;
+  }
+  return cost;
+}
 }  // namespace
 
 Objective::~Objective() = default;
@@ -34,23 +46,23 @@ double Objective::bound(const Vec3& from, const Vec3& to, const Request& request
                        "the bound between two places");
 }
 
+double Objective::do_joining(const Route&, const Request&) const { return 0; }
+
+double Objective::joining(const Route& route, const Request& request) const {
+  return at_least_zero(attributed(objective_text, [&] { return do_joining(route, request); }),
+                       "the cost of joining legs");
+}
+
+double Objective::total(const Route& route, const Request& request) const {
+  return sum_of(*this, route, request) + joining(route, request);
+}
+
 double cost_of(const Leg& leg, const Request& request) {
   return request.objective ? request.objective->cost(leg, 0, request) : leg.length();
 }
 
 double cost_of(const Route& route, const Request& request) {
-  if (!request.objective) {
-    return length(route);
-  }
-  const bool in_time = request.objective->traits().time;
-  double cost = 0;
-  double time_s = 0;
-  for (std::size_t i = 0; i < route.leg_count(); ++i) {
-    const Leg leg = route.leg(i);
-    cost += request.objective->cost(leg, time_s, request);
-    time_s += in_time ? leg_duration(leg, request) : 0;
-  }
-  return cost;
+  return request.objective ? sum_of(*request.objective, route, request) : length(route);
 }
 
 double min_cost(const Request& request) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "altiplan/body.hpp"
+#include "altiplan/energy.hpp"
 
 namespace altiplan {
 
@@ -12,6 +13,8 @@ double Wing::turn_radius() const {
   constexpr double kGravity = 9.80665;
   return airspeed_mps * airspeed_mps / (kGravity * std::tan(bank));
 }
+
+Power::~Power() = default;
 
 double Vehicle::reach_m() const {
   return body != nullptr ? std::max(radius_m, body->outer_m()) : radius_m;

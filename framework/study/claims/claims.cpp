@@ -168,6 +168,7 @@ bool is_of_every_run(std::string_view value) {
 }
 
 bool is_measured(std::string_view value) {
-  return value.ends_with("time_s") || value.ends_with("memory_mb");
+  const bool is_of_flight = value == "time_s" || value == "flight.time_s";
+  return (value.ends_with("time_s") && !is_of_flight) || value.ends_with("memory_mb");
 }
 }  // namespace altiplan::study

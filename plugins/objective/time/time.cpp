@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
+#include "altiplan/flown_route.hpp"
 #include "altiplan/measures.hpp"
 #include "altiplan/objective.hpp"
 #include "altiplan/plugin.hpp"
@@ -21,7 +23,8 @@ struct Params {
   }
 };
 
-/// Seconds of flight at the vehicle's speeds in the wind.
+/// Seconds of flight at the vehicle's speeds in the wind; joining legs takes what its acceleration
+/// does.
 class FlightTime final : public Objective {
  public:
   FlightTime(const Params& params, const Site&) : params_(params) {}
@@ -42,6 +45,34 @@ class FlightTime final : public Objective {
     return sum;
   }
 
+  double do_joining(const Route& route, const Request& request) const override {
+    if (request.vehicle.wing || !request.vehicle.acceleration.takes_time()) {
+      return 0;
+    }
+    double more = 0;
+    fly(route, request, [&](const FlownPhase& phase) { more += above(phase); });
+    for (std::size_t i = 0; i < route.leg_count(); ++i) {
+      more -= do_cost(route.leg(i), 0, request);
+    }
+    return std::max(0.0, more);  // not a number where both are infinite
+  }
+
+  /// Seconds of a phase above the height.
+  double above(const FlownPhase& phase) const {
+    const double share = share_above(phase.from.z(), phase.to.z());
+    if (share == 0 || share == 1) {
+      return share * phase.seconds;
+    }
+    // The share of the way to the crossing, and that of the time.
+    const bool sinks = phase.from.z() > phase.to.z();
+    const double way = sinks ? share : 1 - share;
+    const double v = phase.from_mps;
+    const double change = phase.to_mps - v;
+    const double square = v * v + change * way * (v + phase.to_mps);
+    const double time = change == 0 ? way : (std::sqrt(square) - v) / change;
+    return (sinks ? time : 1 - time) * phase.seconds;
+  }
+
   /// As fast as ever possible: straight, or down to the height where no time counts and up again.
   double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
     const Vec3 way = to - from;
@@ -50,7 +81,9 @@ class FlightTime final : public Objective {
       for (const Wind::Layer& layer : request.wind.layers) {
         wind = std::max(wind, layer.velocity.norm());
       }
-      return params_.above_m ? 0 : way.head<2>().norm() / (request.air_speed() + wind);
+      return params_.above_m ? 0
+                             : std::max(way.head<2>().norm() / (request.air_speed() + wind),
+                                        request.vehicle.climb_time(way.z()));
     }
     const Vehicle& vehicle = request.vehicle;
     double fastest = vehicle.speed_mps;
@@ -60,7 +93,8 @@ class FlightTime final : public Objective {
     const double over = params_.above_m ? std::max(0.0, from.z() - *params_.above_m) +
                                               std::max(0.0, to.z() - *params_.above_m)
                                         : kInfinity;
-    return std::min(way.norm(), over) / fastest;
+    const double seconds = std::min(way.norm(), over) / fastest;
+    return params_.above_m ? seconds : std::max(seconds, vehicle.climb_time(way.z()));
   }
 
   std::string do_unit() const override { return "s"; }

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "altiplan/error.hpp"
+#include "altiplan/flown_route.hpp"
+#include "altiplan/objective.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/request.hpp"
+
+namespace {
+using namespace altiplan;
+
+struct Params {
+  std::optional<double> power_w;
+
+  void describe(Fields& f) {
+    f("power_w", power_w)
+        .unit("W")
+        .greater_than(0)
+        .at_most(1e7)
+        .doc("power in all flight; default: by the vehicle's energy");
+  }
+};
+
+struct ConstantPower final : Power {
+  double power_w = 0;
+  double watts(const SteadyFlight&) const override { return power_w; }
+};
+
+/// Wh of flight; joining legs takes what stops and accelerations do.
+class FlightEnergy final : public Objective {
+ public:
+  FlightEnergy(const Params& params, const Site& site) {
+    if (params.power_w) {
+      auto power = std::make_shared<ConstantPower>();
+      power->power_w = *params.power_w;
+      power_ = power;
+    } else if (site.vehicle.energy != nullptr) {
+      power_ = site.vehicle.energy->power;
+    } else {
+      throw Error("the power is not known: expected vehicle.energy in the scenario, or power_w");
+    }
+    least_w_ = params.power_w ? *params.power_w : least_watts(site.vehicle, *power_);
+  }
+
+ private:
+  double do_cost(const Leg& leg, double, const Request& request) const override {
+    return leg_energy(leg, request, *power_);
+  }
+
+  double do_joining(const Route& route, const Request& request) const override {
+    double more = flown_energy(route, request, *power_);
+    for (std::size_t i = 0; i < route.leg_count(); ++i) {
+      more -= leg_energy(route.leg(i), request, *power_);
+    }
+    return std::max(0.0, more);  // not a number where both are infinite
+  }
+
+  /// The least power for the least time.
+  double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
+    constexpr double kSecondsPerHour = 3600;
+    return least_w_ * least_seconds(to - from, request) / kSecondsPerHour;
+  }
+
+  std::string do_unit() const override { return "Wh"; }
+  /// The power depends on the density of the air, the time on obstacles and layers of wind.
+  Traits do_traits() const override { return {.place = true, .heading = true}; }
+
+  static double fastest(const Vehicle& vehicle) {
+    double mps = vehicle.speed_mps;
+    for (const SpeedNear& near : vehicle.speed_near) {
+      mps = std::max(mps, near.speed_mps);
+    }
+    return mps;
+  }
+
+  static double least_seconds(const Vec3& way, const Request& request) {
+    const double climbs_s = request.vehicle.climb_time(way.z());
+    if (!request.vehicle.wing && request.wind.is_calm()) {
+      return std::max(way.norm() / fastest(request.vehicle), climbs_s);
+    }
+    double wind = 0;
+    for (const Wind::Layer& layer : request.wind.layers) {
+      wind = std::max(wind, layer.velocity.norm());
+    }
+    return std::max(way.head<2>().norm() / (request.air_speed() + wind), climbs_s);
+  }
+
+  /// Of flights at any speed up to the fastest that climb and sink as fast as they may: the least
+  /// of a fine grid of them, less what lies between. 0 where a rate is not limited.
+  static double least_watts(const Vehicle& vehicle, const Power& power) {
+    constexpr int kSteps = 64;
+    constexpr double kBetween = 0.98;
+    const double fast = fastest(vehicle);
+    const double up = vehicle.wing ? fast * std::tan(vehicle.wing->climb) : vehicle.climb_mps;
+    const double down = vehicle.wing ? fast * std::tan(vehicle.wing->sink) : vehicle.sink_mps;
+    if (!std::isfinite(up) || !std::isfinite(down)) {
+      return 0;
+    }
+    double least = kInfinity;
+    for (int i = vehicle.wing ? kSteps : 0; i <= kSteps; ++i) {
+      for (int k = 0; k <= kSteps; ++k) {
+        for (const double height_m : {0.0, 9000.0}) {
+          const double climb = -down + (up + down) * k / kSteps;
+          least = std::min(least, power.watts({fast * i / kSteps, climb, 0, height_m}));
+        }
+      }
+    }
+    return std::isfinite(least) ? kBetween * least : 0;
+  }
+
+  std::shared_ptr<const Power> power_;
+  double least_w_ = 0;
+};
+}  // namespace
+
+ALTIPLAN_PLUGIN(Objective, "energy", FlightEnergy, Params,
+                "Energy of the flight, by the vehicle's power, in Wh")
