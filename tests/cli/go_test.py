@@ -81,6 +81,23 @@ class Go(unittest.TestCase):
         _, err = self.call("go", "--terrain", TERRAIN, *ENDS, "-o", "jacksboro_fault", code=3)
         self.assertIn("exists already", err)
 
+    def test_how_a_copter_is_flown(self):
+        out = self.go("--terrain", TERRAIN, *ENDS, "-o", "plain", folder="plain")
+        self.assertRegex(out, r"; flown in \d+\.\d min, up to \d+\.\d{3} km from the start")
+        ran = json.loads((self.folder / "plain/result.json").read_text())["metrics"]
+        self.assertGreater(ran["time_s"], ran["length_m"] / 10 + 4)
+        steep = math.degrees(math.asin(1.5 / 10))
+        if ran["max_climb_deg"] > steep + 0.1:
+            self.assertRegex(out, r"\d+\.\d degrees (down|up) at \d+\.\d m/s")
+        wh = 300 * ran["time_s"] / 3600
+        out = self.go("--terrain", TERRAIN, *ENDS, "--battery", str(2 * wh), "--power", "300", "-o", "much", folder="much")
+        self.assertRegex(out, rf"min, {wh:.1f} Wh of {1.6 * wh:.1f} Wh that may be used \(battery {2 * wh:.1f} Wh, reserve 20 %\)")
+        out, _ = self.call("go", "--terrain", TERRAIN, *ENDS, "--battery", str(1.2 * wh), "--power", "300", "-o", "little",
+                           code=1)
+        self.assertIn("Wh of the battery may be used", out)
+        _, err = self.call("go", "--terrain", TERRAIN, *ENDS, "--battery", "90", code=2)
+        self.assertIn("--power", err)
+
     def test_a_band_above_ground(self):
         self.go("--terrain", TERRAIN, *ENDS, "--max-agl", "120", "-o", "low", folder="low")
         self.call("check", "low/route.plan", "--terrain", TERRAIN, "--min-agl", "50", "--max-agl",

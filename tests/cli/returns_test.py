@@ -209,6 +209,63 @@ class Returns(PlanCase):
         _, err = self.call("mission.plan", "--terrain", "ridge.asc", "--battery", "30", "--power", "360", code=2)
         self.assertIn("--returns", err)
 
+    def scenario(self, vehicle):
+        (self.folder / "s.yaml").write_text(
+            "altiplan: 1\nmission: mission.plan\nenvironment: [terrain: {file: ridge.asc}]\nvehicle: %s\n" % vehicle)
+        return "s.yaml"
+
+    def test_the_battery_of_a_declared_vehicle(self):
+        """As by --battery and --power, from the least to the greatest power of what the autopilot flies."""
+        way = [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 100, 50)]
+        by_options = self.returns(COPTER, way, "--battery", "30", "--power", "360", "--reserve", "0.1", code=1)
+        energy = by_options["energy"]
+        self.assertAlmostEqual(energy["usable_wh"], 27)
+        self.assertAlmostEqual(energy["min_wh"], by_options["time_s"][0] / 10)
+        self.assertAlmostEqual(energy["max_wh"], by_options["time_s"][1] / 10)
+        self.assertAlmostEqual(energy["farthest_m"], 900, delta=2)
+
+        def declared(power, code, vehicle=COPTER):
+            scenario = self.scenario("{energy: {capacity_wh: 37.5, usable: 0.8, reserve: 0.1, %s}}" % power)
+            self.returns(vehicle, way, code=None)
+            out, _ = self.call("mission.plan", "--scenario", scenario, "--returns", "--json", code=code)
+            return json.loads(out)
+
+        told = declared("power_w: 360", 1)
+        for key in ("usable_wh", "min_wh", "max_wh"):
+            self.assertAlmostEqual(told["energy"][key], energy[key], places=6)
+        self.assertAlmostEqual(told["returns"]["point_of_no_return_s"], by_options["returns"]["point_of_no_return_s"],
+                               places=3)
+        less, more = (declared("multirotor: {mass_kg: %s}" % mass, code) for mass, code in ((1.5, None), (4, 1)))
+        # Of 1.5 kg hover takes 176 W, a climb of 2.5 m/s 194 W.
+        self.assertTrue(130 / 3600 * told["time_s"][0] < less["energy"]["min_wh"] < 176 / 3600 * told["time_s"][0])
+        self.assertTrue(190 / 3600 * told["time_s"][1] < less["energy"]["max_wh"] < 200 / 3600 * told["time_s"][1])
+        self.assertEqual([one["rule"] for one in more["violations"]], ["energy"])
+        self.assertLess(more["returns"]["point_of_no_return_s"], told["returns"]["point_of_no_return_s"])
+        unknown = declared("measured: {mass_kg: 1, level: [{airspeed_mps: 0, power_w: 99}, {airspeed_mps: 9, power_w: 99}]}",
+                           1)  # it flies at 10 m/s
+        self.assertEqual(unknown["returns"]["verdict"], "not_judged")
+        self.assertNotIn("energy", unknown)
+        out, _ = self.call("mission.plan", "--scenario", self.scenario(
+            "{energy: {capacity_wh: 900, multirotor: {mass_kg: 1.5}}}"), "--returns", "--certificate", "c.html", code=0)
+        self.assertRegex(out, r"  energy: \d+\.\d to \d+\.\d Wh of 720\.0 Wh that may be used \(battery 900\.0 Wh, reserve "
+                              r"20 %\), up to 0\.900 km from home")
+        certificate = (self.folder / "c.html").read_text()
+        self.assertIn("of 720.0 Wh that may be used", certificate)
+        self.assertIn("point of no return", certificate)
+
+    def test_a_mission_that_takes_more_than_the_battery(self):
+        told = self.returns(COPTER, [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 100, 50)], "--battery", "10", "--power",
+                            "360", code=1)
+        self.assertEqual(told["verdict"], "fail")
+        violation, = told["violations"]
+        self.assertEqual((violation["rule"], violation["unit"], violation["limit"]), ("energy", "Wh", 8))
+
+    def test_an_aeroplanes_take_off_is_not_judged(self):
+        way = [(22, 400, 0, 260), (16, 900, 0, 260), (16, 2000, 0, 260)]
+        told = self.returns(PLANE, way, "--runway", "90", parameters={"RTL_ALTITUDE": 260}, code=1)
+        self.assertEqual(told["returns"]["verdict"], "not_judged", told["returns"])
+        self.assertIn("item 1 (take-off): a return from an aeroplane's take-off or landing", told["returns"]["not_judged"])
+
     def test_the_option_needs_a_mission(self):
         _, err = self.call("--returns", "mission.plan", code=2)
         self.assertIn("is a mission: add --terrain", err)

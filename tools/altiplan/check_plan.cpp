@@ -16,6 +16,7 @@
 #include "host/base/utf8.hpp"
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
+#include "host/gate/declared_battery.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/gate/returns.hpp"
 #include "host/mission/mission.hpp"
@@ -70,6 +71,9 @@ void print(const PlanReport& report, const host::Mission& world) {
     return painted(stdout, color, word_of(verdict));
   };
   std::printf("%s: %s\n", colored(report.verdict()).c_str(), figures_of(report).c_str());
+  if (report.energy) {
+    std::printf("  energy: %s\n", report.energy->in_words().c_str());
+  }
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
     if (finding.at) {
@@ -195,6 +199,14 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
             {"violations", all},           {"time_s", to_json(report.time)},
             {"parts", parts_json(report)}, {"metrics", host::to_json(report.measures)},
             {"notes", report.notes}};
+  if (const auto& energy = report.energy) {
+    json["energy"] = {
+        {"min_wh", energy->min_wh},
+        {"max_wh", std::isfinite(energy->max_wh) ? Json(energy->max_wh) : Json()},
+        {"usable_wh", energy->battery.usable_wh()},
+        {"reserve", energy->battery.reserve},
+        {"farthest_m", energy->farthest_m}};
+  }
   if (report.returns) {
     json["returns"] = returns_json(*report.returns, world);
   }
@@ -394,6 +406,7 @@ PlanCheck prepared(PlanCheck plan) {
   if (plan.battery_wh) {
     plan.gate.battery = plan.battery;
     plan.gate.battery->capacity_wh = *plan.battery_wh;
+    plan.gate.battery->least_w = plan.battery.power_w;
   }
   if (plan.parameters) {
     plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
@@ -409,6 +422,7 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   judged.world = busy("building the world", [&] {
     return host::build_mission(scenario ? *scenario : world_of(plan, judged.mission, overrides), 1);
   });
+  host::take_battery(judged.world.request.vehicle, judged.mission, plan.gate);
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);
   });

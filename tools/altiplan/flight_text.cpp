@@ -1,10 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "flight_text.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "altiplan/energy.hpp"
 #include "commands.hpp"
 #include "host/base/words.hpp"
 
 namespace altiplan::cli {
+namespace {
+
+/// The steepest climb and descent that the vehicle flies more slowly than its speed.
+std::string steep_legs(const Route& route, const Vehicle& vehicle) {
+  double steepest[2] = {0, 0};  // up and down, radians
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const double climb = climb_angle(route[i + 1] - route[i]);
+    double& most = steepest[climb < 0 ? 1 : 0];
+    most = std::max(most, std::abs(climb));
+  }
+  std::string words;
+  for (const int down : {0, 1}) {
+    const double rate = down == 1 ? vehicle.sink_mps : vehicle.climb_mps;
+    const double speed = rate / std::sin(steepest[down]);
+    if (!vehicle.wing && speed < vehicle.speed_mps) {
+      words += (words.empty() ? "; " : ", ") + fixed(degrees(steepest[down]), 1) + " degrees " +
+               (down == 1 ? "down" : "up") + " at " + fixed(speed, 1) + " m/s";
+    }
+  }
+  return words;
+}
+
+std::string battery_in_words(const Energy& energy) {
+  if (!std::isfinite(energy.capacity_wh)) {
+    return "";
+  }
+  const auto percent = [](double share) { return fixed(100 * share, 0) + " %"; };
+  return " of " + fixed(energy.available_wh(), 1) + " Wh that may be used (battery " +
+         fixed(energy.capacity_wh, 1) + " Wh" +
+         (energy.usable < 1 ? ", usable " + percent(energy.usable) : "") + ", reserve " +
+         percent(energy.reserve) + ")";
+}
+}  // namespace
+
+std::string flown_in_words(const host::RunResult& result) {
+  const Vehicle& vehicle = result.vehicle;
+  const bool is_known = vehicle.energy != nullptr || vehicle.acceleration.takes_time() ||
+                        std::isfinite(vehicle.climb_mps) || std::isfinite(vehicle.sink_mps);
+  if (!result.accepted || !is_known) {
+    return "";
+  }
+  const host::StepResult& step = result.steps[*result.accepted];
+  std::string words = fixed(step.measures->time_s.value_or(0) / 60, 1) + " min";
+  if (vehicle.energy != nullptr) {
+    const double needed = step.measures->energy_wh.value_or(0);
+    words += (std::isfinite(needed) ? ", " + fixed(needed, 1) + " Wh" : ", unknown energy") +
+             battery_in_words(*vehicle.energy);
+  }
+  double farthest = 0;
+  for (const Vec3& p : step.route) {
+    farthest = std::max(farthest, (p - step.route.front()).head<2>().norm());
+  }
+  return words + ", up to " + fixed(farthest / 1000, 3) + " km from the start" +
+         steep_legs(step.route, vehicle);
+}
 
 void print_metrics(std::FILE* to, const char* of, const host::MetricValues& metrics) {
   for (const auto& [name, value] : metrics) {

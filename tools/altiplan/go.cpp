@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "first_run.hpp"
+#include "flight_text.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/unfinished.hpp"
 #include "host/first_route/first_route.hpp"
@@ -135,10 +136,11 @@ void print(const host::RunResult& result) {
     seconds += each.time_s;
   }
   const Measures& m = step.measures.value();
+  const std::string flown = flown_in_words(result);
   std::printf(
-      "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s\n",
+      "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s%s\n",
       fixed(m.length_m / 1000, 3).c_str(), m.waypoints, fixed(m.min_ground_clearance_m, 1).c_str(),
-      duration(seconds).c_str());
+      duration(seconds).c_str(), flown.empty() ? "" : ("; flown in " + flown).c_str());
 }
 
 /// True if the mission passes as autopilots fly it; prints the verdict.
@@ -272,6 +274,19 @@ void add_wishes(App& command, GoArguments& arguments) {
                   "plan for an aeroplane with this turn radius")
       ->check(number_from(1, 5000))
       ->excludes(copter);
+  auto* battery = command
+                      .add_option("--battery WH", wish.battery_wh,
+                                  "capacity of the battery, with --power; routes may use it but for "
+                                  "its reserve")
+                      ->check(number_from(0.01, 1e6));
+  auto* power =
+      command.add_option("--power W", wish.power_w, "mean power in flight, with --battery")
+          ->check(number_from(0.01, 1e6))
+          ->needs(battery);
+  battery->needs(power);
+  command.add_option("--reserve SHARE", wish.reserve, "share of the battery to keep (default 0.2)")
+      ->check(number_from(0, 0.99))
+      ->needs(battery);
   command.add_option("--planner NAME", wish.planner, "planner (default: chosen)");
   command.add_option("--start-time TIME", wish.start_time,
                      "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count");

@@ -110,6 +110,9 @@ void print_table(std::FILE* to, const host::RunResult& result) {
             flown ? result.flight->measures : step.measures, step.time_s, costs_of(result, step));
   }
   table.print(to);
+  if (const std::string flown = flown_in_words(result); !flown.empty()) {
+    std::fprintf(to, "  flown in %s\n", flown.c_str());
+  }
   if (result.accepted) {
     print_metrics(to, "route", result.steps[*result.accepted].metrics);
   }

@@ -295,10 +295,12 @@ void EnergyEntry::describe(Fields& f) {
   f("hover", hover).doc("alternatively: a multirotor's power as measured in hover");
   f("aeroplane", aeroplane).doc("alternatively: an aeroplane's power by its drag polar");
   f("measured", measured).doc("alternatively: power measured at several airspeeds");
+  describe_power(f, "power_w", power_w).doc("alternatively: mean power in all flight");
   f.check(int(multirotor.has_value()) + int(rotors.has_value()) + int(hover.has_value()) +
-                  int(aeroplane.has_value()) + int(measured.has_value()) ==
+                  int(aeroplane.has_value()) + int(measured.has_value()) +
+                  int(power_w.has_value()) ==
               1,
-          "expected one of multirotor, rotors, hover, aeroplane, measured");
+          "expected one of multirotor, rotors, hover, aeroplane, measured, power_w");
 }
 
 bool VehicleEntry::has_wing() const {
@@ -361,8 +363,9 @@ void describe_performance(Fields& f, VehicleEntry& v) {
   f.check(accelerates || (!v.jerk_mps3 && !v.jerk_time_s && !v.corner_radius_m),
           "expected acceleration_mps2 with jerk_mps3, jerk_time_s and corner_radius_m");
   f.check(!v.energy || !v.energy->aeroplane || has_wing, "expected wing with energy.aeroplane");
-  f.check(!v.energy || v.energy->aeroplane || v.energy->measured || !has_wing,
-          "expected energy.aeroplane or energy.measured with a wing");
+  const bool is_of_rotors = v.energy && (v.energy->multirotor || v.energy->rotors || v.energy->hover);
+  f.check(!is_of_rotors || !has_wing,
+          "expected energy.aeroplane, energy.measured or energy.power_w with a wing");
 }
 }  // namespace
 

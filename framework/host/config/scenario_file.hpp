@@ -205,7 +205,7 @@ struct MeasuredEntry {
   void describe(Fields& f);
 };
 
-/// The battery, and one of five models of power.
+/// The battery, and one of six models of power.
 struct EnergyEntry {
   std::optional<double> capacity_wh;
   double usable = 1;
@@ -215,6 +215,7 @@ struct EnergyEntry {
   std::optional<HoverEntry> hover;
   std::optional<AeroplaneEntry> aeroplane;
   std::optional<MeasuredEntry> measured;
+  std::optional<double> power_w;
   void describe(Fields& f);
 };
 

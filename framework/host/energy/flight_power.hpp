@@ -63,6 +63,12 @@ struct PolarPower final : Power {
   double watts(const SteadyFlight& flight) const override;
 };
 
+/// The same in all flight.
+struct MeanPower final : Power {
+  double mean_w = 0;
+  double watts(const SteadyFlight&) const override { return mean_w; }
+};
+
 /// Measured power, linear between airspeeds; infinite beyond the highest and below the lowest. A
 /// climb takes the vehicle's weight times its rate over the efficiency more, a descent no less.
 struct MeasuredPower final : Power {

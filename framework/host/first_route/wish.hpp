@@ -25,6 +25,9 @@ struct RouteWish {
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
   std::optional<double> turn_radius_m;  ///< of an aeroplane; none: a copter
+  std::optional<double> battery_wh;     ///< with power_w
+  std::optional<double> power_w;        ///< mean power in flight
+  double reserve = 0.2;                 ///< share of the battery
   std::optional<std::string> planner;   ///< none: chosen
   std::optional<std::string> start_time;
 };

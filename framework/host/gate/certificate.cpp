@@ -178,6 +178,13 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
   html += row({"route", counted(measures.waypoints, "waypoint") + ", " + metres(measures.length_m) +
                             " m, " + report.height_in_words() + ", " + time_in_words(report.time) +
                             ", " + metres(measures.min_clearance_m) + " m from obstacles"});
+  if (report.energy) {
+    html += row({"energy", xml_text(report.energy->in_words())});
+  }
+  if (report.returns && report.returns->point_of_no_return_s) {
+    html += row({"point of no return",
+                 with_decimals(*report.returns->point_of_no_return_s, 0) + " s after take-off"});
+  }
   html += "</table>\n" + violations(report, request) + returns(report);
   html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);
   html += "<h2>Height profile</h2>\n" + profile_svg(report.imported.route, request);

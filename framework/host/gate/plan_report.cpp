@@ -383,6 +383,35 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
     report.findings.push_back(std::move(finding));
   }
 }
+
+void add_energy(PlanReport& report, const formats::MissionFile& plan, const World& world,
+                const Battery& battery) {
+  constexpr double kSecondsPerHour = 3600;
+  EnergyUse use;
+  use.battery = battery;
+  use.min_wh = report.time.min_s * battery.least_w / kSecondsPerHour;
+  use.max_wh = report.time.max_s * battery.power_w / kSecondsPerHour;
+  Vec3 home = report.line.empty() ? Vec3::Zero() : report.line.front();
+  if (plan.home && world.frame().has_position()) {
+    const auto [x, y] = world.frame().to_local(plan.home->lon, plan.home->lat);
+    home = {x, y, 0};
+  }
+  for (const Vec3& p : report.line) {
+    use.farthest_m = std::max(use.farthest_m, (p - home).head<2>().norm());
+  }
+  if (!(use.max_wh <= battery.usable_wh())) {
+    Finding finding;
+    finding.violation.constraint = "energy";
+    finding.violation.value = use.max_wh;
+    finding.violation.limit = battery.usable_wh();
+    finding.violation.unit = "Wh";
+    finding.violation.message = "the mission takes " + use.in_words();
+    finding.items = {"the mission"};
+    report.findings.push_back(std::move(finding));
+  }
+  report.energy = use;
+}
+
 /// The times at which a mission is flown are a band, which begins whenever it is started.
 Finding moving_not_judged() {
   Finding finding;
@@ -448,6 +477,14 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   report.measures = measure(route, request);
   report.measures.length_m = length_on_ground(route, world.truth.frame());
   report.measures.duration_s.reset();  // along drawn lines: nobody flies it so
+  report.measures.time_s.reset();
+  report.measures.energy_wh.reset();
+  if (options.battery) {
+    add_energy(report, plan, world.truth, *options.battery);
+  }
+  if (!options.battery_problem.empty()) {
+    report.notes.push_back("not judged: " + options.battery_problem);
+  }
   return report;
 }
 

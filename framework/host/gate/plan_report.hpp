@@ -66,6 +66,29 @@ struct ReturnsReport {
   std::string in_words() const;
 };
 
+/// What a vehicle has to fly on, and the power that it takes on the whole.
+struct Battery {
+  double capacity_wh = 0;
+  double reserve = 0.2;  ///< share that is kept
+  double power_w = 0;    ///< the greatest
+  double least_w = 0;
+
+  double usable_wh() const { return capacity_wh * (1 - reserve); }
+};
+
+/// What a mission takes of a battery, from the fastest flight at the least power to the slowest at
+/// the greatest.
+struct EnergyUse {
+  double min_wh = 0;
+  double max_wh = 0;
+  Battery battery;
+  double farthest_m = 0;  ///< from home, or from where it begins
+
+  /// "31.0 to 44.2 Wh of 72.0 Wh that may be used (battery 90.0 Wh, reserve 20 %), up to 3.912 km
+  /// from home"
+  std::string in_words() const;
+};
+
 /// The verdict on a mission of a ground station.
 struct PlanReport {
   std::string file;
@@ -80,6 +103,7 @@ struct PlanReport {
   std::vector<TimeSpan> times;                 ///< when each point of the drawn route is left first
   double lowest_m = kInfinity;                 ///< above ground, but where it takes off and lands
   Measures measures;
+  std::optional<EnergyUse> energy{};       ///< where a battery is known
   std::vector<std::string> notes;          ///< how the file and the world were read
   std::optional<ReturnsReport> returns{};  ///< where they are judged
 
@@ -121,15 +145,6 @@ void expect_route(const std::string& file, const formats::MissionFile& plan);
 /// The world as it is from one time of the flight to another, in seconds.
 using WorldDuring = std::function<Mission(double, double)>;
 
-/// What a vehicle has to fly on, and the power that it takes on the whole.
-struct Battery {
-  double capacity_wh = 0;
-  double reserve = 0.2;  ///< share that is kept
-  double power_w = 0;
-
-  double usable_wh() const { return capacity_wh * (1 - reserve); }
-};
-
 /// Who may fly it, as far as the user says.
 struct GateOptions {
   std::optional<formats::Firmware> firmware{};
@@ -138,6 +153,7 @@ struct GateOptions {
   double drawn_mps = 5;        ///< speed along drawn lines
   WorldDuring world_during{};  ///< none: it is the same all the time
   std::optional<Battery> battery{};
+  std::string battery_problem{};  ///< why that of a declared vehicle is not judged; "" if it is
   bool own_ends = true;  ///< the route need not begin and end where the world's scenario says
 };
 

@@ -55,6 +55,15 @@ std::string PlanReport::height_in_words() const {
                                    : "height above ground unknown";
 }
 
+std::string EnergyUse::in_words() const {
+  const auto one = [](double value) { return with_decimals(value, 1); };
+  const std::string slowest = std::isfinite(max_wh) ? " to " + one(max_wh) + " Wh" : " Wh or more";
+  return one(min_wh) + slowest + " of " + one(battery.usable_wh()) +
+         " Wh that may be used (battery " + one(battery.capacity_wh) + " Wh, reserve " +
+         with_decimals(100 * battery.reserve, 0) + " %), up to " +
+         with_decimals(farthest_m / 1000, 3) + " km from home";
+}
+
 const RefusedReturn* ReturnsReport::worst() const {
   const auto off = [](const RefusedReturn& refused) {  // what hits something is worse
     const Violation& violation = refused.finding.violation;

@@ -86,6 +86,9 @@ class ReturnJudge {
         latest_ = {latest_s, std::max(part.time.max_s, part.until_s)};
         judge(std::span(part.strips));
         last_s = end_s;
+      } else if (!part.is_return && lands_on_wings) {
+        add_unjudged(name_of_command(plan_.commands[part.command]) +
+                     ": a return from an aeroplane's take-off or landing");
       }
       begin_s = end_s;
       latest_s = part.time.max_s;
@@ -387,6 +390,9 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
                   autopilots.size() > 1 ? autopilot.name() + ": " : "", report)
           .judge();
     }
+  }
+  if (!options.battery_problem.empty()) {
+    report.unjudged.push_back(options.battery_problem);
   }
   keep_each_once(report.parameters);
   report.verdict = !report.refused.empty()    ? Verdict::fail

@@ -140,6 +140,11 @@ std::shared_ptr<const Power> power_of(const EnergyEntry& entry) {
     power.cl_max = wing->cl_max;
     return std::make_shared<PolarPower>(power);
   }
+  if (entry.power_w) {
+    MeanPower power;
+    power.mean_w = *entry.power_w;
+    return std::make_shared<MeanPower>(power);
+  }
   MeasuredPower power;
   if (const auto& hover = entry.hover) {
     constexpr double kAnySpeed = 1e9;

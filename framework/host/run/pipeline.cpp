@@ -40,6 +40,7 @@ RunResult Run::operator()() {
   }
   result_.frame = mission_.truth.frame();
   result_.objective = mission_.request.objective;
+  result_.vehicle = mission_.request.vehicle;
   result_.setup_time_s = mission_.setup_time_s;
   result_.notes = mission_.notes;
   result_.warnings.insert(result_.warnings.end(), mission_.warnings.begin(),

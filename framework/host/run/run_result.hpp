@@ -45,6 +45,7 @@ struct RunResult {
   std::optional<FlightResult> flight;
   Frame frame;
   std::shared_ptr<const Objective> objective;  ///< null: length
+  Vehicle vehicle;
   double setup_time_s = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;

@@ -22,7 +22,6 @@ struct Params {
     f("power_w", power_w)
         .unit("W")
         .greater_than(0)
-        .at_most(1e7)
         .doc("power in all flight; default: by the vehicle's energy");
   }
 };
