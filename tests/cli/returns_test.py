@@ -226,7 +226,7 @@ class Returns(PlanCase):
 
         def declared(power, code, vehicle=COPTER):
             scenario = self.scenario("{energy: {capacity_wh: 37.5, usable: 0.8, reserve: 0.1, %s}}" % power)
-            self.returns(vehicle, way, code=None)
+            self.returns(vehicle, way, code=0)
             out, _ = self.call("mission.plan", "--scenario", scenario, "--returns", "--json", code=code)
             return json.loads(out)
 
@@ -235,7 +235,7 @@ class Returns(PlanCase):
             self.assertAlmostEqual(told["energy"][key], energy[key], places=6)
         self.assertAlmostEqual(told["returns"]["point_of_no_return_s"], by_options["returns"]["point_of_no_return_s"],
                                places=3)
-        less, more = (declared("multirotor: {mass_kg: %s}" % mass, code) for mass, code in ((1.5, None), (4, 1)))
+        less, more = (declared("multirotor: {mass_kg: %s}" % mass, code) for mass, code in ((1.5, 0), (4, 1)))
         # Of 1.5 kg hover takes 176 W, a climb of 2.5 m/s 194 W.
         self.assertTrue(130 / 3600 * told["time_s"][0] < less["energy"]["min_wh"] < 176 / 3600 * told["time_s"][0])
         self.assertTrue(190 / 3600 * told["time_s"][1] < less["energy"]["max_wh"] < 200 / 3600 * told["time_s"][1])

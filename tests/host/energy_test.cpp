@@ -9,6 +9,7 @@
 
 #include "altiplan/flown_route.hpp"
 #include "host/energy/flight_power.hpp"
+#include "host/energy/way_home.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::host::energy_test {
@@ -144,6 +145,43 @@ TEST(Energy, Px4sCorners) {
     }
   });
   EXPECT_GT(corners, 8);
+}
+
+TEST(Energy, Px4sWayHome) {
+  ALTIPLAN_DATA_OR_SKIP(file, "energy/px4_rtl_time.csv");
+  EXPECT_GT(each_line(file,
+                      [](const auto& w) {
+                        const double found =
+                            time_home({number(w[1]), number(w[2])}, number(w[3]),
+                                      {number(w[4]), number(w[5])}, number(w[6]), number(w[7]));
+                        if (w[8] == "inf") {
+                          EXPECT_EQ(found, kInfinity);
+                        } else {
+                          expect_same(found, number(w[8]), 1e-5);
+                        }
+                      }),
+            4);
+}
+
+TEST(Energy, ThePointOfNoReturnLeavesEnoughForTheStraightWayBack) {
+  Request request;
+  request.world = std::make_shared<const World>();
+  request.vehicle.speed_mps = 10;
+  const auto lasts = [&](double capacity_wh) {
+    auto power = std::make_shared<MeanPower>();
+    power->mean_w = 360;  // 0.1 Wh a second
+    request.vehicle.energy = std::make_shared<Energy>(Energy{power, capacity_wh, 1, 0.2});
+    return point_of_no_return({{0, 0, 50}, {1000, 0, 50}}, request);
+  };
+  EXPECT_FALSE(point_of_no_return({{0, 0, 50}, {1000, 0, 50}}, request)) << "no battery";
+  EXPECT_NEAR(*lasts(12.5), 50, 1) << "10 Wh are 100 s, half of them for the way back";
+  EXPECT_DOUBLE_EQ(*lasts(25.1), 100) << "the end of the flight";
+  request.vehicle.sink_mps = 1;
+  EXPECT_NEAR(*lasts(12.5), 50, 1) << "the start is as high";
+  request.wind.layers = {{-kInfinity, {-5, 0, 0}}};  // 5 m/s out; behind, it counts for nothing
+  EXPECT_NEAR(*lasts(12.5), 100 / 1.5, 1);
+  request.wind.layers = {{-kInfinity, {5, 0, 0}}};  // 15 m/s out, 5 m/s back
+  EXPECT_NEAR(*lasts(12.5), 25, 1);
 }
 
 TEST(Energy, StandardAtmosphere) {

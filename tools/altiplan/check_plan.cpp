@@ -200,12 +200,11 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
             {"parts", parts_json(report)}, {"metrics", host::to_json(report.measures)},
             {"notes", report.notes}};
   if (const auto& energy = report.energy) {
-    json["energy"] = {
-        {"min_wh", energy->min_wh},
-        {"max_wh", std::isfinite(energy->max_wh) ? Json(energy->max_wh) : Json()},
-        {"usable_wh", energy->battery.usable_wh()},
-        {"reserve", energy->battery.reserve},
-        {"farthest_m", energy->farthest_m}};
+    json["energy"] = {{"min_wh", energy->min_wh},
+                      {"max_wh", std::isfinite(energy->max_wh) ? Json(energy->max_wh) : Json()},
+                      {"usable_wh", energy->battery.usable_wh()},
+                      {"reserve", energy->battery.reserve},
+                      {"farthest_m", energy->farthest_m}};
   }
   if (report.returns) {
     json["returns"] = returns_json(*report.returns, world);

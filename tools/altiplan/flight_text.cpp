@@ -61,8 +61,17 @@ std::string flown_in_words(const host::RunResult& result) {
   for (const Vec3& p : step.route) {
     farthest = std::max(farthest, (p - step.route.front()).head<2>().norm());
   }
-  return words + ", up to " + fixed(farthest / 1000, 3) + " km from the start" +
-         steep_legs(step.route, vehicle);
+  words += ", up to " + fixed(farthest / 1000, 3) + " km from the start" +
+           steep_legs(step.route, vehicle);
+  if (vehicle.energy != nullptr && std::isfinite(vehicle.energy->capacity_wh)) {
+    const std::optional<double>& last_s = result.point_of_no_return_s;
+    const bool always = last_s && *last_s >= step.measures->time_s.value_or(0);
+    words += always ? "; the battery lasts for a straight way home to the end"
+             : last_s
+                 ? "; for a straight way home it lasts until " + fixed(*last_s / 60, 1) + " min"
+                 : "; it does not last for a straight way home";
+  }
+  return words;
 }
 
 void print_metrics(std::FILE* to, const char* of, const host::MetricValues& metrics) {

@@ -274,11 +274,12 @@ void add_wishes(App& command, GoArguments& arguments) {
                   "plan for an aeroplane with this turn radius")
       ->check(number_from(1, 5000))
       ->excludes(copter);
-  auto* battery = command
-                      .add_option("--battery WH", wish.battery_wh,
-                                  "capacity of the battery, with --power; routes may use it but for "
-                                  "its reserve")
-                      ->check(number_from(0.01, 1e6));
+  auto* battery =
+      command
+          .add_option("--battery WH", wish.battery_wh,
+                      "capacity of the battery, with --power; routes may use it but for "
+                      "its reserve")
+          ->check(number_from(0.01, 1e6));
   auto* power =
       command.add_option("--power W", wish.power_w, "mean power in flight, with --battery")
           ->check(number_from(0.01, 1e6))

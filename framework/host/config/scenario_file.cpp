@@ -363,7 +363,8 @@ void describe_performance(Fields& f, VehicleEntry& v) {
   f.check(accelerates || (!v.jerk_mps3 && !v.jerk_time_s && !v.corner_radius_m),
           "expected acceleration_mps2 with jerk_mps3, jerk_time_s and corner_radius_m");
   f.check(!v.energy || !v.energy->aeroplane || has_wing, "expected wing with energy.aeroplane");
-  const bool is_of_rotors = v.energy && (v.energy->multirotor || v.energy->rotors || v.energy->hover);
+  const bool is_of_rotors =
+      v.energy && (v.energy->multirotor || v.energy->rotors || v.energy->hover);
   f.check(!is_of_rotors || !has_wing,
           "expected energy.aeroplane, energy.measured or energy.power_w with a wing");
 }

@@ -118,15 +118,15 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
 }
 
 std::string FirstRoute::vehicle() const {
-  const std::string energy =
-      wish_.battery_wh && wish_.power_w
-          ? ", energy: {capacity_wh: " + text_of(*wish_.battery_wh) +
-                ", reserve: " + text_of(wish_.reserve) + ", power_w: " + text_of(*wish_.power_w) + "}"
-          : "";
-  return (wish_.turn_radius_m ? "{radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
-                                    ", bank_deg: " + text_of(kBank) + "}"
-                              : "{radius_m: 1, performance: arducopter, speed_mps: " +
-                                    text_of(speed_mps())) +
+  const std::string energy = wish_.battery_wh && wish_.power_w
+                                 ? ", energy: {capacity_wh: " + text_of(*wish_.battery_wh) +
+                                       ", reserve: " + text_of(wish_.reserve) +
+                                       ", power_w: " + text_of(*wish_.power_w) + "}"
+                                 : "";
+  return (wish_.turn_radius_m
+              ? "{radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
+                    ", bank_deg: " + text_of(kBank) + "}"
+              : "{radius_m: 1, performance: arducopter, speed_mps: " + text_of(speed_mps())) +
          energy + "}";
 }
 

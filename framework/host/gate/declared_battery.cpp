@@ -78,7 +78,8 @@ void take_battery(const Vehicle& vehicle, const formats::MissionFile& plan, Gate
     }
   }
   if (!std::isfinite(battery.power_w) || battery.power_w == 0) {
-    options.battery_problem = "the battery: the vehicle's power is not known at all the speeds flown";
+    options.battery_problem =
+        "the battery: the vehicle's power is not known at all the speeds flown";
     return;
   }
   options.battery = battery;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/error.hpp"
+#include "host/energy/way_home.hpp"
 #include "host/flight/events.hpp"
 #include "host/judge/judge.hpp"
 #include "host/run/pipeline_run.hpp"
@@ -101,6 +102,10 @@ void Run::take_route(const Route& route) {
 }
 
 void Run::conclude() {
+  if (result_.accepted) {
+    result_.point_of_no_return_s =
+        point_of_no_return(result_.steps[*result_.accepted].route, mission_.request);
+  }
   result_.budget_hit = std::any_of(result_.steps.begin(), result_.steps.end(),
                                    [](const StepResult& s) { return s.budget_hit; });
   if (interrupted()) {

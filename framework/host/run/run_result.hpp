@@ -46,6 +46,8 @@ struct RunResult {
   Frame frame;
   std::shared_ptr<const Objective> objective;  ///< null: length
   Vehicle vehicle;
+  /// Of the accepted route (host/energy/way_home.hpp); none: no battery is known, or no route.
+  std::optional<double> point_of_no_return_s;
   double setup_time_s = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;
