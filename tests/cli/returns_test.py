@@ -114,6 +114,24 @@ class Returns(PlanCase):
             told = self.returns(COPTER, self.beyond(), parameters=parameters, code=0)
             self.assertEqual((told["returns"]["verdict"], told["returns"]["worst"]), ("pass", None))
 
+    def test_the_least_return_height_that_cures(self):
+        self.returns(COPTER, self.beyond(), "--fix-returns", "cure.param", code=1)
+        name, height = (self.folder / "cure.param").read_text().strip().split(",")
+        self.assertEqual(name, "RTL_ALT_M")
+        # The ridge is 200 m above home, which is beside the model's posts.
+        self.assertTrue(195 <= int(height) <= 215, height)
+        for more, code in ((0, 0), (-1, 1)):
+            self.returns(COPTER, self.beyond(), parameters={name: int(height) + more}, code=code)
+        # By the name and unit that the parameters have.
+        self.returns(COPTER, self.beyond(), "--fix-returns", "old.param", parameters={"RTL_ALT": 1500}, code=1)
+        self.assertEqual((self.folder / "old.param").read_text(), f"RTL_ALT,{height}00\n")
+        # Below a ceiling none does.
+        (self.folder / "cure.param").unlink()
+        out, err = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--max-agl", "200", "--fix-returns",
+                             "cure.param", code=1)
+        self.assertIn("not written: found no return height", err)
+        self.assertFalse((self.folder / "cure.param").exists())
+
     def test_a_rally_point_beyond_the_ridge(self):
         told = self.returns(COPTER, self.beyond(), rally=[(1900, 60, 20)], code=0)
         self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])

@@ -223,6 +223,10 @@ void add_check(App& app, Action& action) {
   outputs->push_back(command.add_flag("--returns", arguments.mission.plan.returns,
                                       "also judge the failsafe return from every second of it"));
   add_battery(command, arguments.mission.plan, outputs->back());
+  command
+      .add_option("--fix-returns FILE", arguments.mission.plan.fixed_returns,
+                  "with --returns: write the least return height with which all pass (.param)")
+      ->needs(outputs->back());
   add_plugin_path(command, arguments.overrides);
   command.add_flag("--json", arguments.mission.plan.json, "print as JSON");
   set_example(command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");

@@ -18,6 +18,7 @@
 #include "host/gate/changed_plan.hpp"
 #include "host/gate/declared_battery.hpp"
 #include "host/gate/plan_report.hpp"
+#include "host/gate/return_cure.hpp"
 #include "host/gate/returns.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
@@ -319,6 +320,28 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
   }
 }
 
+/// Writes the parameter that cures the returns, or says why not.
+void fix_returns(const PlanCheck& plan, const PlanReport& report,
+                 const formats::MissionFile& mission, const host::Mission& world) {
+  if (report.passed()) {
+    warn(*plan.fixed_returns + ": not written: the returns pass as they are");
+    return;
+  }
+  const auto cure = busy("curing the returns", [&] {
+    return host::cure_of_returns(plan.plan, mission, world, plan.gate);
+  });
+  if (!cure) {
+    warn(*plan.fixed_returns +
+         ": not written: found no return height with which the mission and its returns pass");
+    return;
+  }
+  host::write_file(*plan.fixed_returns, cure->parameter + "," + fixed(cure->value, 0) + "\n");
+  if (!plan.json) {
+    std::printf("fixed: %s passes: %s %s\n", plan.fixed_returns->c_str(), cure->parameter.c_str(),
+                fixed(cure->value, 0).c_str());
+  }
+}
+
 /// Notes of layers, and of airspace that has nothing near the route.
 void add_notes(PlanReport& report, const host::Mission& world) {
   constexpr double kFar = 50'000;  // metres
@@ -352,7 +375,8 @@ void expect_outputs(const PlanCheck& plan, const std::vector<std::filesystem::pa
   }
   for (const auto& [file, option] : {std::pair(&plan.certificate, "--certificate"),
                                      {&plan.junit, "--junit"},
-                                     {&plan.fixed, "--fix"}}) {
+                                     {&plan.fixed, "--fix"},
+                                     {&plan.fixed_returns, "--fix-returns"}}) {
     if (*file) {
       expect_writable(*file, option);
       expect_apart(*file, option, others);
@@ -456,6 +480,9 @@ int check(PlanCheck plan, const std::optional<host::Config>& scenario,
   plan.json ? void(std::cout << host::file_text(to_json(report, world))) : print(report, world);
   if (plan.fixed) {
     fix(plan, report, text, mission, world);
+  }
+  if (plan.fixed_returns) {
+    fix_returns(plan, report, mission, world);
   }
   return report.passed() ? kDone : kNoRoute;
 }

@@ -34,6 +34,7 @@ struct PlanCheck {
   std::optional<std::string> certificate;
   std::optional<std::string> junit;
   std::optional<std::string> fixed;
+  std::optional<std::string> fixed_returns;  ///< for a parameter
 };
 
 /// A mission, the world in which it is flown, and the verdict.
