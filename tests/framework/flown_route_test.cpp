@@ -37,6 +37,21 @@ TEST(FlownRoute, StopsAtEachPoint) {
   EXPECT_DOUBLE_EQ(flown_time(route, request), 20 / 3.0);
 }
 
+TEST(FlownRoute, LegsMayBeAsShortAsTheyLike) {
+  Request request = request_at(300);
+  request.vehicle.acceleration = {.mps2 = 0.01, .corner_radius_m = 5};
+  for (const double jerk : {kInfinity, 0.5}) {
+    request.vehicle.acceleration.jerk_mps3 = jerk;
+    Polyline points{{0, 0, 100}, {2e6, 0, 100}};  // where it still speeds up
+    for (int n = 1; n < 50; ++n) {
+      points.push_back(points.back() + Vec3(n % 2 == 0 ? 2e-6 : 0.04, 0, 0));
+    }
+    points.push_back({1e7 + 1, 0, 100});
+    const double whole = flown_time({points.front(), points.back()}, request);
+    EXPECT_NEAR(flown_time(points, request) / whole, 1, 1e-6);
+  }
+}
+
 TEST(FlownRoute, WaitsBetweenStops) {
   Request request = request_at(3);
   request.vehicle.acceleration.mps2 = 1;

@@ -57,31 +57,33 @@ double reachable(double from_mps, double metres, double max_mps, const Accelerat
                   [&](double v) { return ramp(from_mps, v, acceleration).metres <= metres; });
 }
 
-/// Speeds that follow from each other by rounding may be a little too different for a distance.
-constexpr double kRounding = 1e-9;
-}  // namespace
-
-std::optional<Sprint> sprint(double metres, double from_mps, double to_mps, double max_mps,
-                             const Acceleration& acceleration) {
-  if (ramp(from_mps, to_mps, acceleration).metres > metres * (1 + kRounding)) {
-    return std::nullopt;
-  }
-  const auto ramps_m = [&](double top) {
-    return ramp(from_mps, top, acceleration).metres + ramp(top, to_mps, acceleration).metres;
-  };
+/// Of a line that is long enough but for rounding.
+Sprint sprint_along(double metres, double from_mps, double to_mps, double max_mps,
+                    const Acceleration& acceleration) {
   double top = max_mps;
   if (!std::isfinite(acceleration.jerk_mps3)) {
     const double squares = from_mps * from_mps + to_mps * to_mps;
     top = std::min(max_mps, std::sqrt((2 * acceleration.mps2 * metres + squares) / 2));
   } else {
-    top = greatest(std::max(from_mps, to_mps), max_mps,
-                   [&](double v) { return ramps_m(v) <= metres; });
+    top = greatest(std::max(from_mps, to_mps), max_mps, [&](double v) {
+      return ramp(from_mps, v, acceleration).metres + ramp(v, to_mps, acceleration).metres <=
+             metres;
+    });
   }
   top = std::max({top, from_mps, to_mps});
   Sprint flown{ramp(from_mps, top, acceleration), top, {}, ramp(top, to_mps, acceleration)};
   flown.level.metres = std::max(0.0, metres - flown.up.metres - flown.down.metres);
   flown.level.seconds = top > 0 ? flown.level.metres / top : 0;
   return flown;
+}
+}  // namespace
+
+std::optional<Sprint> sprint(double metres, double from_mps, double to_mps, double max_mps,
+                             const Acceleration& acceleration) {
+  constexpr double kRounding = 1e-9;
+  return ramp(from_mps, to_mps, acceleration).metres > metres * (1 + kRounding)
+             ? std::nullopt
+             : std::optional(sprint_along(metres, from_mps, to_mps, max_mps, acceleration));
 }
 
 double corner_speed(double turn, double radius_m, double mps2) {
@@ -184,7 +186,7 @@ class Accelerated {
   void fly(const Stretch& stretch, double from_mps, double to_mps,
            const std::function<void(const FlownPhase&)>& use) const {
     const Sprint flown =
-        sprint(stretch.metres, from_mps, to_mps, stretch.top_mps(), acceleration_).value();
+        sprint_along(stretch.metres, from_mps, to_mps, stretch.top_mps(), acceleration_);
     const Vec3 way = (stretch.phase.to - stretch.phase.from) / stretch.metres;
     double along = 0;
     const auto part = [&](const Ramp& ramp, double begin_mps, double end_mps) {

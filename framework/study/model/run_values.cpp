@@ -62,11 +62,12 @@ RunValues values_of(const host::Json& result) {
   values.add("setup_time_s", result.at("setup_time_s"));
   for (const host::Json& step : result.at("steps")) {
     const std::string prefix = "steps." + step.at("id").get<std::string>() + ".";
+    values.add_each(prefix + "counters.", step.at("counters"));
+    values.add_each(prefix, step.at("metrics"));
+    // Last: of a step `time_s` is the wall time, not that of its route's flight.
     for (const char* name : {"time_s", "setup_time_s", "accepted", "budget_hit"}) {
       values.add(prefix + name, step.at(name));
     }
-    values.add_each(prefix + "counters.", step.at("counters"));
-    values.add_each(prefix, step.at("metrics"));
   }
   if (const host::Json& flight = result.at("flight"); !flight.is_null()) {
     for (const char* name : kOfFlightAlone) {
