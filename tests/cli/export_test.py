@@ -81,7 +81,7 @@ class Export(Flight):
         for options in ((), ("-o", os.path.join(self.folder, "route.dat"))):
             code, out, err = altiplan("export", self.result, *options)
             self.assertEqual((code, out), (2, ""))
-            self.assertIn("--to is required, or an output file (-o) that ends in .plan", err)
+            self.assertIn("--to is required, or an output file (-o) that ends in one of .plan, ", err)
 
     def test_plan(self):
         for altitude, frame, mode in (("sea", 0, 2), ("ground", 10, 4), ("home", 3, 1)):

@@ -11,6 +11,7 @@
 #include "host/import_export/thinning.hpp"
 #include "host/judge/judge.hpp"
 #include "support/files.hpp"
+#include "support/folders.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::host::export_test {
@@ -19,7 +20,6 @@ namespace {
 using formats::AltitudeFrame;
 using formats::MissionItem;
 using formats::Zone;
-using Format = formats::MissionFile::Format;
 
 /// Level ground at 120 m.
 class Plain final : public Environment, public Ground {
@@ -71,10 +71,9 @@ struct Scene {
   }
 };
 
-ExportOptions options_of(std::optional<Format> format,
-                         AltitudeFrame altitude = AltitudeFrame::sea) {
+ExportOptions options_of(const char* format, AltitudeFrame altitude = AltitudeFrame::sea) {
   ExportOptions options;
-  options.format = format;
+  options.format = &format_named(format);
   options.altitude = altitude;
   return options;
 }
@@ -101,18 +100,15 @@ double farthest(const Polyline& a, const Polyline& b) {
 
 TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
   const Scene scene;
-  const std::pair<std::optional<Format>, const char*> formats[] = {
-      {Format::qgc_plan, "r.plan"}, {Format::waypoints, "r.waypoints"},
-      {Format::kml, "r.kml"},       {Format::geojson, "r.geojson"},
-      {Format::gpx, "r.gpx"},       {std::nullopt, "r.csv"}};
   int written = 0;
-  for (const auto& [format, file] : formats) {
+  for (const RouteFormat& format : route_formats()) {
+    const std::string file = std::string("r") + format.extension;
     for (const auto frame : {AltitudeFrame::sea, AltitudeFrame::ground, AltitudeFrame::home}) {
-      const ExportOptions options = options_of(format, frame);
+      const ExportOptions options = options_of(format.name, frame);
       if (!options.problem().empty()) {
         continue;
       }
-      SCOPED_TRACE(std::string(file) + " " + name(frame));
+      SCOPED_TRACE(std::string(format.name) + " " + name(frame));
       const Exported result = exported(scene, options);
       ASSERT_TRUE(result.text.has_value());
       EXPECT_TRUE(says(result, "read back and judged: valid with 7 decimals"));
@@ -122,7 +118,8 @@ TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
                                    : "relative to home, which is 120 m"));
       EXPECT_EQ(says(result, "warning: judged with straight legs"), frame == AltitudeFrame::ground);
       const ImportedRoute back =
-          read_imported_route(file, *result.text, scene.mission.truth, scene.mission.request);
+          read_imported_route(file, *result.text, scene.mission.truth, scene.mission.request,
+                              result.mission.mission.home);
       EXPECT_EQ(back.route.front(), kAround.front());
       EXPECT_LT(farthest(back.route.waypoints(), kAround), 0.01);
       EXPECT_GT(farthest(back.route.waypoints(), kAround), 0);
@@ -130,7 +127,7 @@ TEST(Export, WhatIsReadBackIsTheRouteInEveryFormatAndFrame) {
       ++written;
     }
   }
-  EXPECT_EQ(written, 15);  // 6 formats by 3, without GPX above ground, GPX and KML above home
+  EXPECT_EQ(written, 21);
 }
 
 TEST(Export, HeightsOfAPlanAreInTheFrameThatItNames) {
@@ -138,7 +135,7 @@ TEST(Export, HeightsOfAPlanAreInTheFrameThatItNames) {
   for (const auto& [frame, numbers] : {std::pair(AltitudeFrame::sea, std::array{0, 2, 310}),
                                        std::pair(AltitudeFrame::ground, std::array{10, 4, 190}),
                                        std::pair(AltitudeFrame::home, std::array{3, 1, 190})}) {
-    const Json plan = Json::parse(*exported(scene, options_of(Format::qgc_plan, frame)).text);
+    const Json plan = Json::parse(*exported(scene, options_of("qgc-plan", frame)).text);
     const Json& item = plan.at("mission").at("items").at(1);
     EXPECT_EQ(item.at("frame"), numbers[0]);
     EXPECT_EQ(item.at("AltitudeMode"), numbers[1]);
@@ -151,7 +148,7 @@ TEST(Export, HeightsOfAPlanAreInTheFrameThatItNames) {
 TEST(Export, MoreDecimalsWhereFewerBreakTheRoute) {
   Scene scene;
   scene.mission.request.goal.tolerance_m = 0;
-  const Exported result = exported(scene, options_of(Format::kml));
+  const Exported result = exported(scene, options_of("kml"));
   ASSERT_TRUE(result.text.has_value());
   EXPECT_TRUE(says(result, "valid with 13 decimals of a degree and 8 of a metre (with fewer: "));
 }
@@ -159,14 +156,14 @@ TEST(Export, MoreDecimalsWhereFewerBreakTheRoute) {
 TEST(Export, WritesNothingThatIsNotSound) {
   const Scene scene;
   const Polyline through{{50, 50, 300}, {500, 500, 300}, {950, 950, 300}};
-  const Exported result = exported(scene, options_of(Format::qgc_plan), through);
+  const Exported result = exported(scene, options_of("qgc-plan"), through);
   EXPECT_FALSE(result.text.has_value());
   EXPECT_TRUE(says(result, "not written: the route is not valid: point 0, clearance"));
 }
 
 TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
   const Scene scene;
-  const Exported result = exported(scene, options_of(Format::qgc_plan));
+  const Exported result = exported(scene, options_of("qgc-plan"));
   EXPECT_TRUE(says(result, "zone 'site' is in the fence at every height"));
   EXPECT_TRUE(says(result, "zone 'yard' is in the fence without its holes"));
   const formats::MissionFile plan = formats::read_mission("r.plan", *result.text);
@@ -189,7 +186,7 @@ TEST(Export, AFenceHoldsTheZonesAndSaysWhatItCannot) {
 TEST(Export, AZoneThatTheRouteFliesOverStaysOutOfTheFence) {
   const Polyline over{{50, 50, 500}, {950, 950, 500}};
   const Scene scene(over);
-  const Exported result = exported(scene, options_of(Format::qgc_plan), over);
+  const Exported result = exported(scene, options_of("qgc-plan"), over);
   ASSERT_TRUE(result.text.has_value());
   EXPECT_TRUE(
       says(result, "zone 'site' is left out of the fence: the route passes above or below it"));
@@ -198,7 +195,7 @@ TEST(Export, AZoneThatTheRouteFliesOverStaysOutOfTheFence) {
 
 TEST(Export, KmlAndItsReaderKeepLimitsRolesAndHoles) {
   const Scene scene;
-  const Exported result = exported(scene, options_of(Format::kml));
+  const Exported result = exported(scene, options_of("kml"));
   const formats::MissionFile map = formats::read_mission("r.kml", *result.text);
   ASSERT_EQ(map.zones.size(), 3U);
   EXPECT_EQ(map.zones[0].name, "site");
@@ -208,9 +205,53 @@ TEST(Export, KmlAndItsReaderKeepLimitsRolesAndHoles) {
   EXPECT_TRUE(map.zones[2].keeps_in());
 }
 
+/// A route of many points, as a text of WPML has it.
+MissionText long_text(std::size_t points) {
+  MissionText text;
+  text.mission.home = formats::MissionPoint{8, 47, 400};
+  for (std::size_t n = 0; n < points; ++n) {
+    text.mission.items.push_back(
+        {MissionItem::Kind::waypoint, {8 + 1e-6 * double(n), 47, 50, AltitudeFrame::home}, 0, ""});
+  }
+  return text;
+}
+
+TEST(Export, WpmlIsSplitAtItsLimitAndReadsBackWhole) {
+  const RouteFormat& wpml = format_named("wpml");
+  for (const std::size_t points : {2, 65'536, 65'537, 140'000}) {
+    const MissionText text = long_text(points);
+    const formats::MissionFile read = wpml.read("r.kmz", wpml.write(text));
+    ASSERT_EQ(read.items.size(), points);
+    EXPECT_EQ(read.route_problem, "");
+    for (const std::size_t n : {std::size_t(0), points / 2, points - 1}) {
+      EXPECT_NEAR(read.items[n].at.lon, text.mission.items[n].at.lon, 1e-7);
+      EXPECT_EQ(read.items[n].at.frame, AltitudeFrame::home);
+    }
+    EXPECT_NEAR(read.home.value().altitude_m, 400, 0.01);
+    EXPECT_EQ(wpml.notes(text).size(), points > 65'536 ? 3U : 2U);
+  }
+}
+
+TEST(Export, TheDocumentationListsTheTableOfFormats) {
+  const std::string page =
+      altiplan::testing::text_of(folders::source() / "docs" / "reference" / "route-formats.md");
+  for (const RouteFormat& format : route_formats()) {
+    std::string frames;
+    for (const AltitudeFrame frame : format.frames) {
+      frames += (frames.empty() ? "" : ", ") + std::string(name(frame));
+    }
+    const char* zones = format.zones == RouteFormat::Zones::fence    ? "as fence"
+                        : format.zones == RouteFormat::Zones::solids ? "yes"
+                                                                     : "no";
+    const std::string row = std::string("| `") + format.name + "` | `" + format.extension + "` | " +
+                            format.description + " | " + zones + " | " + frames + " |";
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
+}
+
 TEST(Export, FormatsWithoutAPlaceForZonesSaySo) {
   const Scene scene;
-  for (const Format format : {Format::waypoints, Format::gpx}) {
+  for (const char* format : {"waypoints", "gpx"}) {
     EXPECT_TRUE(says(exported(scene, options_of(format)), "3 zones are not written"));
   }
 }
@@ -219,7 +260,7 @@ TEST(Export, TakeOffAndLandingAreCommandsAndTheRouteStaysTheSame) {
   const Scene scene;
   for (const auto frame : {AltitudeFrame::sea, AltitudeFrame::ground, AltitudeFrame::home}) {
     for (const auto& [format, file] :
-         {std::pair(Format::qgc_plan, "r.plan"), std::pair(Format::waypoints, "r.waypoints")}) {
+         {std::pair("qgc-plan", "r.plan"), std::pair("waypoints", "r.waypoints")}) {
       ExportOptions options = options_of(format, frame);
       options.takeoff = options.land = true;
       const Exported result = exported(scene, options);
@@ -246,7 +287,7 @@ TEST(Export, FewerItemsOnlyWhileTheRouteStaysSound) {
   }
   dense.push_back(kAround.back());
   const Scene scene(dense);
-  ExportOptions options = options_of(Format::waypoints);
+  ExportOptions options = options_of("waypoints");
   options.max_items = 6;
   const Exported six = exported(scene, options, dense);
   ASSERT_TRUE(six.text.has_value());
@@ -271,11 +312,11 @@ TEST(Export, MoreItemsThanAutopilotsStoreAreWarnedOf) {
       dense.push_back(start + (goal - start) * (n / (points - 1.0)));
     }
     const Scene scene(dense);
-    for (const Format format : {Format::waypoints, Format::kml}) {
+    for (const char* format : {"waypoints", "kml"}) {
       const Exported result = exported(scene, options_of(format), dense);
       ASSERT_TRUE(result.text.has_value());
       EXPECT_EQ(says(result, "warning: 501 items: PX4 stores 500"),
-                points == 501 && format == Format::waypoints);
+                points == 501 && std::string(format) == "waypoints");
     }
   }
 }
@@ -289,7 +330,7 @@ TEST(Export, ThinningKeepsEndsAndViaPoints) {
 
 TEST(Export, SaysHowFarAutopilotsFlyBesideLongLegs) {
   // 60 km along 36.5° N in a frame of longitude and latitude: L² tan(lat) / 8R = 52.3 m.
-  const auto notes_of = [](double length, Format format) {
+  const auto notes_of = [](double length, const char* format) {
     const Polyline route{{50, 50, 300}, {50 + length, 50, 300}};
     Scene scene(route, true, nullptr);
     scene.mission.request.volume.max.x() = scene.mission.track_request.volume.max.x() = 1e5;
@@ -301,46 +342,46 @@ TEST(Export, SaysHowFarAutopilotsFlyBesideLongLegs) {
     }
     return all;
   };
-  EXPECT_NE(notes_of(60'000, Format::qgc_plan)
+  EXPECT_NE(notes_of(60'000, "qgc-plan")
                 .find("PX4 flies up to 52.3 m beside the line that was "
                       "judged, ArduPilot 0.0 m"),
             std::string::npos)
-      << notes_of(60'000, Format::qgc_plan);
-  EXPECT_EQ(notes_of(60'000, Format::kml).find("beside the line"), std::string::npos);
-  EXPECT_EQ(notes_of(5'000, Format::qgc_plan).find("beside the line"), std::string::npos);
+      << notes_of(60'000, "qgc-plan");
+  EXPECT_EQ(notes_of(60'000, "kml").find("beside the line"), std::string::npos);
+  EXPECT_EQ(notes_of(5'000, "qgc-plan").find("beside the line"), std::string::npos);
 }
 
 TEST(Export, AFlightIsJudgedAsATrackWithItsTimes) {
   Scene scene;
   scene.mission.track_request.vehicle.speed_mps = 20;
   ExportSource source{"flight", kAround, {0, 40, 60, 80, 120}, {}};
-  const Exported csv = export_route(scene.mission, source, options_of(std::nullopt));
+  const Exported csv = export_route(scene.mission, source, options_of("csv"));
   ASSERT_TRUE(csv.text.has_value());
   EXPECT_TRUE(csv.text->starts_with("time_s,x_m,y_m,z_m,longitude_deg,latitude_deg,altitude_m,"));
   source.times = {0, 4, 6, 8, 12};
-  const Exported fast = export_route(scene.mission, source, options_of(std::nullopt));
+  const Exported fast = export_route(scene.mission, source, options_of("csv"));
   EXPECT_FALSE(fast.text.has_value());
   EXPECT_TRUE(says(fast, "speed"));
 }
 
 TEST(Export, SaysWhatTheWorldLacks) {
   const Scene nowhere(kAround, false, nullptr);
-  EXPECT_THROW(exported(nowhere, options_of(Format::kml)), Error);
-  const Exported csv = exported(nowhere, options_of(std::nullopt, AltitudeFrame::home));
+  EXPECT_THROW(exported(nowhere, options_of("kml")), Error);
+  const Exported csv = exported(nowhere, options_of("csv", AltitudeFrame::home));
   ASSERT_TRUE(csv.text.has_value());
   EXPECT_TRUE(csv.text->starts_with(
       "time_s,x_m,y_m,z_m,altitude_m,altitude_frame\n0,50,50,300,180,home\n"));
   Scene groundless(kAround, true, nullptr);
   groundless.mission.truth = groundless.mission.truth.without("ground");
-  EXPECT_THROW(exported(groundless, options_of(Format::kml, AltitudeFrame::ground)), Error);
-  ExportOptions land = options_of(Format::qgc_plan);
+  EXPECT_THROW(exported(groundless, options_of("kml", AltitudeFrame::ground)), Error);
+  ExportOptions land = options_of("qgc-plan");
   land.land = true;
   EXPECT_THROW(exported(groundless, land), Error);
   // A height that nobody gave is not made up: it would be flown.
-  EXPECT_THROW(exported(groundless, options_of(Format::qgc_plan, AltitudeFrame::home)), Error);
-  EXPECT_TRUE(says(exported(groundless, options_of(Format::qgc_plan)),
+  EXPECT_THROW(exported(groundless, options_of("qgc-plan", AltitudeFrame::home)), Error);
+  EXPECT_TRUE(says(exported(groundless, options_of("qgc-plan")),
                    "home is written at the start's own height"));
-  ExportOptions home = options_of(Format::qgc_plan, AltitudeFrame::home);
+  ExportOptions home = options_of("qgc-plan", AltitudeFrame::home);
   home.takeoff = home.land = true;
   home.home_altitude_m = 80;
   const Exported with_home = exported(groundless, home);
@@ -361,7 +402,7 @@ TEST(Export, TheWaysUpAndDownAreJudgedToo) {
       " ceiling_m: 200}]}";
   for (const bool start : {true, false}) {
     const Scene scene(kAround, true, start ? below_start : below_goal);
-    ExportOptions options = options_of(Format::qgc_plan);
+    ExportOptions options = options_of("qgc-plan");
     EXPECT_TRUE(exported(scene, options).text.has_value());
     (start ? options.land : options.takeoff) = true;
     EXPECT_TRUE(exported(scene, options).text.has_value());
@@ -373,10 +414,10 @@ TEST(Export, TheWaysUpAndDownAreJudgedToo) {
 }
 
 TEST(Export, OptionsThatDoNotGoTogether) {
-  EXPECT_EQ(options_of(Format::qgc_plan, AltitudeFrame::home).problem(), "");
-  EXPECT_NE(options_of(Format::gpx, AltitudeFrame::ground).problem(), "");
-  EXPECT_NE(options_of(Format::kml, AltitudeFrame::home).problem(), "");
-  for (const auto format : {Format::kml, Format::gpx, Format::geojson}) {
+  EXPECT_EQ(options_of("qgc-plan", AltitudeFrame::home).problem(), "");
+  EXPECT_NE(options_of("gpx", AltitudeFrame::ground).problem(), "");
+  EXPECT_NE(options_of("kml", AltitudeFrame::home).problem(), "");
+  for (const auto format : {"kml", "gpx", "geojson"}) {
     ExportOptions options = options_of(format);
     options.takeoff = true;
     EXPECT_NE(options.problem(), "");

@@ -20,7 +20,6 @@
 namespace altiplan::host::export_turns_test {
 namespace {
 
-using Format = formats::MissionFile::Format;
 using Until = formats::MissionCircle::Until;
 
 constexpr double kRadius = 80;
@@ -44,28 +43,21 @@ Mission mission_for(const Route& route, double goal_tolerance = 1) {
   return mission;
 }
 
-ExportOptions options_of(std::optional<Format> format, bool loiters = false) {
+ExportOptions options_of(const char* format, bool loiters = false) {
   ExportOptions options;
-  options.format = format;
+  options.format = &format_named(format);
   options.loiters = loiters;
   return options;
-}
-
-const char* file_of(std::optional<Format> format) {
-  return !format                        ? "r.csv"
-         : *format == Format::qgc_plan  ? "r.plan"
-         : *format == Format::waypoints ? "r.waypoints"
-         : *format == Format::kml       ? "r.kml"
-         : *format == Format::gpx       ? "r.gpx"
-                                        : "r.geojson";
 }
 
 Exported exported(const Mission& mission, const Route& route, const ExportOptions& options) {
   return export_route(mission, {"turns", route, {}, {}}, options);
 }
 
-Route read_back(const Mission& mission, const std::string& text, std::optional<Format> format) {
-  return read_imported_route(file_of(format), text, mission.truth, mission.request).route;
+Route read_back(const Mission& mission, const std::string& text, const char* format) {
+  return read_imported_route(std::string("r") + format_named(format).extension, text, mission.truth,
+                             mission.request)
+      .route;
 }
 
 std::string all_of(const Exported& exported) {
@@ -112,10 +104,8 @@ formats::MissionFile plan_of(const Exported& exported) {
 TEST(ExportTurns, EveryFormatTakesThemAsPointsWithinHalfAMetre) {
   const Route route = corner(radians(-130), -20);
   const Mission mission = mission_for(route);
-  for (const std::optional<Format> format :
-       {std::optional(Format::qgc_plan), std::optional(Format::waypoints),
-        std::optional(Format::kml), std::optional(Format::geojson), std::optional(Format::gpx),
-        std::optional<Format>()}) {
+  for (const char* format :
+       {"qgc-plan", "waypoints", "kml", "kmz", "geojson", "gpx", "czml", "mcap", "csv"}) {
     const Exported result = exported(mission, route, options_of(format));
     ASSERT_TRUE(result.text) << all_of(result);
     EXPECT_NE(all_of(result).find("1 turn written as "), std::string::npos) << all_of(result);
@@ -132,9 +122,9 @@ TEST(ExportTurns, PointsKeepTheTurnRadiusAndTheHeadings) {
   const Route route = corner(radians(100));
   Mission mission = mission_for(route);
   mission.request.goal.heading = radians(100);
-  const Exported result = exported(mission, route, options_of(Format::qgc_plan));
+  const Exported result = exported(mission, route, options_of("qgc-plan"));
   ASSERT_TRUE(result.text);
-  EXPECT_TRUE(judge(read_back(mission, *result.text, Format::qgc_plan), mission.request, {}).ok())
+  EXPECT_TRUE(judge(read_back(mission, *result.text, "qgc-plan"), mission.request, {}).ok())
       << all_of(result);
   EXPECT_EQ(all_of(result).find("judged along the turns"), std::string::npos) << all_of(result);
 }
@@ -144,7 +134,7 @@ TEST(ExportTurns, OfARouteThatBeginsWithATurnWhatThePointsCannotKeepIsSaid) {
   route.push_back(Leg::turning({{0, 0, 500}, 0}, radians(90), kRadius, 0));
   route.push_back(Vec3(kRadius, 500, 500));
   const Mission mission = mission_for(route);
-  const Exported result = exported(mission, route, options_of(Format::qgc_plan));
+  const Exported result = exported(mission, route, options_of("qgc-plan"));
   ASSERT_TRUE(result.text) << all_of(result);
   EXPECT_NE(all_of(result).find("turn radius, climb and headings are judged along the turns"),
             std::string::npos)
@@ -155,7 +145,7 @@ TEST(ExportTurns, ALoiterIsACircleThatIsLeftOnATangent) {
   for (const double turn : {radians(120), radians(-200)}) {
     const Route route = corner(turn, 0, 80.25);
     const Mission mission = mission_for(route);
-    for (const Format format : {Format::qgc_plan, Format::waypoints}) {
+    for (const char* format : {"qgc-plan", "waypoints"}) {
       const Exported result = exported(mission, route, options_of(format, true));
       ASSERT_TRUE(result.text) << all_of(result);
       EXPECT_NE(all_of(result).find("3 points and 1 loiter, "), std::string::npos);
@@ -171,7 +161,7 @@ TEST(ExportTurns, ALoiterIsACircleThatIsLeftOnATangent) {
       EXPECT_LT(apart(route, read), 0.03);
     }
     const nlohmann::json items =
-        nlohmann::json::parse(*exported(mission, route, options_of(Format::qgc_plan, true)).text)
+        nlohmann::json::parse(*exported(mission, route, options_of("qgc-plan", true)).text)
             .at("mission")
             .at("items");
     EXPECT_EQ(items.at(2).at("command"), 31);
@@ -188,20 +178,20 @@ TEST(ExportTurns, AHelixIsALoiterToItsAltitudeAndFullCirclesAtOneHeightAreCounte
   const double climb = kRadius * turn * std::tan(kClimb);
   const Route helix = corner(turn, climb * (1 - 1e-9));
   Mission mission = mission_for(helix);
-  const Exported up = exported(mission, helix, options_of(Format::qgc_plan, true));
+  const Exported up = exported(mission, helix, options_of("qgc-plan", true));
   ASSERT_TRUE(up.text) << all_of(up);
   ASSERT_EQ(plan_of(up).items.size(), 4U);
   EXPECT_EQ(plan_of(up).items[2].circle->until, Until::altitude);
-  EXPECT_LT(apart(helix, read_back(mission, *up.text, Format::qgc_plan)), 0.03);
+  EXPECT_LT(apart(helix, read_back(mission, *up.text, "qgc-plan")), 0.03);
 
   const Route level = corner(-turn);
   mission = mission_for(level);
-  const Exported around = exported(mission, level, options_of(Format::waypoints, true));
+  const Exported around = exported(mission, level, options_of("waypoints", true));
   ASSERT_TRUE(around.text) << all_of(around);
   const formats::MissionFile file = formats::read_mission("r.waypoints", *around.text);
   EXPECT_EQ(file.items[2].circle, (formats::MissionCircle{Until::turns, kRadius, -1, 2}));
   EXPECT_NE(all_of(around).find("PX4 does not accept the full circles"), std::string::npos);
-  EXPECT_LT(apart(level, read_back(mission, *around.text, Format::waypoints)), 0.03);
+  EXPECT_LT(apart(level, read_back(mission, *around.text, "waypoints")), 0.03);
 }
 
 // A helix with more circles than its climb needs would be left sooner.
@@ -221,14 +211,14 @@ TEST(ExportTurns, WhatAnAutopilotWouldFlyDifferentlyIsWrittenAsPoints) {
       {s_turn, 1}};                           // the first leads to another circle
   for (const auto& [route, loiters] : cases) {
     const Mission mission = mission_for(route);
-    const Exported result = exported(mission, route, options_of(Format::qgc_plan, true));
+    const Exported result = exported(mission, route, options_of("qgc-plan", true));
     ASSERT_TRUE(result.text) << all_of(result);
     const formats::MissionFile file = plan_of(result);
     EXPECT_EQ(std::size_t(std::count_if(file.items.begin(), file.items.end(),
                                         [](const auto& item) { return item.circle.has_value(); })),
               loiters);
     EXPECT_NE(all_of(result).find("1 turn written as "), std::string::npos) << all_of(result);
-    EXPECT_LT(apart(route, read_back(mission, *result.text, Format::qgc_plan)), kArcTolerance);
+    EXPECT_LT(apart(route, read_back(mission, *result.text, "qgc-plan")), kArcTolerance);
   }
 }
 
@@ -245,10 +235,10 @@ TEST(ExportTurns, InWindEveryTurnIsPoints) {
   Mission mission = mission_for(route);
   mission.request.wind.layers = {{-kInfinity, wind}};
   ASSERT_TRUE(judge(route, mission.request, {}).ok());
-  const Exported result = exported(mission, route, options_of(Format::qgc_plan, true));
+  const Exported result = exported(mission, route, options_of("qgc-plan", true));
   ASSERT_TRUE(result.text) << all_of(result);
   EXPECT_NE(all_of(result).find(" turns written as "), std::string::npos) << all_of(result);
-  EXPECT_LT(apart(route, read_back(mission, *result.text, Format::qgc_plan)), kArcTolerance);
+  EXPECT_LT(apart(route, read_back(mission, *result.text, "qgc-plan")), kArcTolerance);
 }
 
 TEST(ExportTurns, LoitersOfStartAndGoalAreCirclesThatARouteLeavesAndJoins) {
@@ -269,21 +259,21 @@ TEST(ExportTurns, LoitersOfStartAndGoalAreCirclesThatARouteLeavesAndJoins) {
   request.start.loiter = Loiter{100, 1};
   request.goal = {route.back() + 120 * unit_heading(radians(60 - 90)), 0, {}, Loiter{120, -1}};
   ASSERT_TRUE(judge(route, request, {}).ok());
-  for (const Format format : {Format::qgc_plan, Format::waypoints}) {
+  for (const char* format : {"qgc-plan", "waypoints"}) {
     const Exported result = exported(mission, route, options_of(format, true));
     ASSERT_TRUE(result.text) << all_of(result);
     EXPECT_NE(all_of(result).find("valid with 7 decimals"), std::string::npos) << all_of(result);
-    const formats::MissionFile file = formats::read_mission(file_of(format), *result.text);
+    const formats::MissionFile file = formats::read_mission("r", *result.text);
     EXPECT_EQ(file.items.front().circle, (formats::MissionCircle{Until::altitude, 100, 1, 0}));
     EXPECT_EQ(file.items.back().circle, (formats::MissionCircle{Until::forever, 120, -1, 0}));
     EXPECT_LT(apart(route, read_back(mission, *result.text, format)), 0.05);
   }
-  for (const auto format : {std::optional(Format::kml), std::optional<Format>()}) {
+  for (const char* format : {"kml", "csv"}) {
     const Exported points = exported(mission, route, options_of(format));
     ASSERT_TRUE(points.text) << all_of(points);
     EXPECT_LT(apart(route, read_back(mission, *points.text, format)), kArcTolerance);
   }
-  ExportOptions takeoff = options_of(Format::qgc_plan, true);
+  ExportOptions takeoff = options_of("qgc-plan", true);
   takeoff.takeoff = true;
   takeoff.home_altitude_m = 0;
   EXPECT_THROW(exported(mission, route, takeoff), Error);
@@ -298,21 +288,21 @@ TEST(ExportTurns, FewerItemsDropNoTurn) {
   const Mission mission = mission_for(route);
   EXPECT_EQ(thinned(route, 4, mission.request, {}), (std::vector<std::size_t>{0, 5, 6, 7}));
   EXPECT_EQ(thinned(route, 2, mission.request, {}).size(), 4U);
-  ExportOptions options = options_of(Format::qgc_plan, true);
+  ExportOptions options = options_of("qgc-plan", true);
   options.max_items = 4;
   const Exported four = exported(mission, route, options);
   ASSERT_TRUE(four.text) << all_of(four);
   EXPECT_EQ(plan_of(four).items.size(), 4U);
-  EXPECT_LT(apart(route, read_back(mission, *four.text, Format::qgc_plan)), 0.03);
+  EXPECT_LT(apart(route, read_back(mission, *four.text, "qgc-plan")), 0.03);
   options.max_items = 3;
   EXPECT_FALSE(exported(mission, route, options).text);
 }
 
 TEST(ExportTurns, CirclesNeedCommandsAndOneHeight) {
-  EXPECT_EQ(options_of(Format::waypoints, true).problem(), "");
-  EXPECT_NE(options_of(Format::kml, true).problem(), "");
-  EXPECT_NE(options_of(std::nullopt, true).problem(), "");
-  ExportOptions options = options_of(Format::qgc_plan, true);
+  EXPECT_EQ(options_of("waypoints", true).problem(), "");
+  EXPECT_NE(options_of("kml", true).problem(), "");
+  EXPECT_NE(options_of("csv", true).problem(), "");
+  ExportOptions options = options_of("qgc-plan", true);
   options.altitude = formats::AltitudeFrame::ground;
   EXPECT_NE(options.problem(), "");
 }
@@ -351,9 +341,9 @@ TEST(ExportTurns, RandomRoutesComeBackInBothForms) {
     const Mission mission = mission_for(route);
     ASSERT_TRUE(judge(route, mission.request, {}).ok()) << n;
     for (const bool as_loiters : {false, true}) {
-      const Exported result = exported(mission, route, options_of(Format::qgc_plan, as_loiters));
+      const Exported result = exported(mission, route, options_of("qgc-plan", as_loiters));
       ASSERT_TRUE(result.text) << n << ": " << all_of(result);
-      const Route read = read_back(mission, *result.text, Format::qgc_plan);
+      const Route read = read_back(mission, *result.text, "qgc-plan");
       EXPECT_LT(apart(route, read), kArcTolerance + 0.03) << n << as_loiters << all_of(result);
       for (std::size_t i = 0; i < read.leg_count(); ++i) {
         loiters += read.leg(i).turns() ? 1 : 0;

@@ -9,6 +9,7 @@
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
 #include "host/import_export/imported_route.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
@@ -181,7 +182,7 @@ void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>&
     throw UsageError{
         "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
   }
-  if (arguments.result && !is_plan(arguments) && formats::is_mission_file(*arguments.result)) {
+  if (arguments.result && !is_plan(arguments) && host::is_mission_name(*arguments.result)) {
     throw UsageError{*arguments.result + " is a mission: add --terrain DEM or --scenario FILE"};
   }
   for (const Option* output : outputs) {

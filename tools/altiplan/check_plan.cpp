@@ -20,6 +20,7 @@
 #include "host/gate/plan_report.hpp"
 #include "host/gate/return_cure.hpp"
 #include "host/gate/returns.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 #include "plan_world.hpp"
@@ -306,8 +307,9 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
   if (cured) {
     better = host::changed_plan(text, mission.format,
                                 changes_of(mission, *cured, world.truth, report, words));
-    passes = host::judge_plan(plan.plan, formats::read_mission(plan.plan, better), world, plan.gate)
-                 .passed();
+    passes =
+        host::judge_plan(plan.plan, host::read_mission_file(plan.plan, better), world, plan.gate)
+            .passed();
   }
   if (!passes) {
     warn(*plan.fixed +
@@ -439,7 +441,7 @@ PlanCheck prepared(PlanCheck plan) {
 
 JudgedPlan judge(PlanCheck& plan, const std::string& text,
                  const std::optional<host::Config>& scenario, const host::Overrides& overrides) {
-  JudgedPlan judged{formats::read_mission(plan.plan, text), {}, {}};
+  JudgedPlan judged{host::read_mission_file(plan.plan, text), {}, {}};
   host::expect_route(plan.plan, judged.mission);
   plan.gate.world_during = world_during(plan, judged.mission, overrides);
   judged.world = busy("building the world", [&] {
@@ -455,6 +457,7 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
     });
   }
   add_notes(judged.report, judged.world);
+  judged.gate = plan.gate;
   return judged;
 }
 
@@ -462,10 +465,11 @@ int check(PlanCheck plan, const std::optional<host::Config>& scenario,
           const host::Overrides& overrides) {
   const std::string text = formats::read_file(plan.plan);
   if (plan.fixed) {  // refuses other formats
-    static_cast<void>(host::changed_plan(text, formats::read_mission(plan.plan, text).format, {}));
+    static_cast<void>(
+        host::changed_plan(text, host::read_mission_file(plan.plan, text).format, {}));
   }
   JudgedPlan judged = judge(plan, text, scenario, overrides);
-  auto& [mission, world, report] = judged;
+  auto& [mission, world, report, gate] = judged;
   if (const std::string words = left_out(plan); !words.empty()) {
     report.notes.insert(report.notes.begin(), words);
   }

@@ -42,6 +42,7 @@ struct JudgedPlan {
   formats::MissionFile mission;
   host::Mission world;
   host::PlanReport report;
+  host::GateOptions gate{};  ///< by which it was judged
 
   /// What is wrong with it, a line each.
   std::vector<std::string> findings() const;

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <iostream>
-#include <map>
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/import_export/plan.hpp"
+#include "host/import_export/placing.hpp"
 #include "host/import_export/route_csv.hpp"
 #include "mission_options.hpp"
 #include "route_export.hpp"
 
 namespace altiplan::cli {
 namespace {
-
-using Format = formats::MissionFile::Format;
 
 struct ExportArguments {
   RouteExport route;
@@ -23,31 +20,20 @@ struct ExportArguments {
   std::optional<std::string> fence;
 };
 
-const std::map<std::string, std::optional<Format>>& formats() {
-  static const std::map<std::string, std::optional<Format>> kAll{
-      {"qgc-plan", Format::qgc_plan}, {"waypoints", Format::waypoints},
-      {"kml", Format::kml},           {"geojson", Format::geojson},
-      {"gpx", Format::gpx},           {"csv", std::nullopt}};
-  return kAll;
-}
-
-/// The format's name: as given, or by the output file's extension.
-std::string format_of(const ExportArguments& arguments) {
+/// As given, or by the output file's extension.
+const host::RouteFormat& format_of(const ExportArguments& arguments) {
   if (arguments.to) {
-    return *arguments.to;
+    return host::format_named(*arguments.to);
   }
-  static const std::map<std::string, std::string> kExtensions{
-      {".plan", "qgc-plan"}, {".waypoints", "waypoints"},
-      {".kml", "kml"},       {".geojson", "geojson"},
-      {".gpx", "gpx"},       {".csv", "csv"}};
-  const auto found =
-      kExtensions.find(std::filesystem::path(arguments.out.value_or("")).extension().string());
-  if (found == kExtensions.end()) {
-    throw UsageError{
-        "--to is required, or an output file (-o) that ends in .plan, .waypoints, .kml, .geojson, "
-        ".gpx or .csv"};
+  const host::RouteFormat* format = host::format_by_extension(arguments.out.value_or(""));
+  if (format == nullptr) {
+    std::string extensions;
+    for (const std::string& extension : host::format_extensions()) {
+      extensions += (extensions.empty() ? "" : ", ") + extension;
+    }
+    throw UsageError{"--to is required, or an output file (-o) that ends in one of " + extensions};
   }
-  return found->second;
+  return *format;
 }
 
 /// The zones in a file of their own; false if there are none.
@@ -73,43 +59,60 @@ std::string csv_of(const JudgedPlan& judged) {
   return host::route_csv_text(rows, judged.world.truth.frame().has_position(), {});
 }
 
+/// The drawn line, with the times of the fastest flight between its points.
+std::string timed_text(const JudgedPlan& judged, const host::ExportOptions& options,
+                       const std::string& name) {
+  const Route& route = judged.report.imported.route;
+  const host::Placing place(judged.world, options, route.front());
+  host::MissionText text;
+  text.mission.name = name;
+  text.mission.home = place.home();
+  const auto add = [&](const Vec3& at, double time_s) {
+    text.local.push_back(at);
+    text.mission.items.push_back({formats::MissionItem::Kind::waypoint, place(at), 0, ""});
+    text.times_s.push_back(time_s);
+  };
+  add(route.front(), judged.report.times.front().min_s);
+  for (std::size_t n = 0; n < route.leg_count(); ++n) {
+    const std::vector<Vec3> points = route.leg(n).chords(kChordTolerance);
+    const double begin_s = judged.report.times[n].min_s;
+    const double pieces = double(points.size() - 1);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      add(points[i], begin_s + (judged.report.times[n + 1].min_s - begin_s) * double(i) / pieces);
+    }
+  }
+  warn("times are those of the fastest flight");
+  return options.format->write(text);
+}
+
 /// Its own commands, where the format has some; else its positions. None, which is reported: the
 /// mission does not pass.
 std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
   const std::string& file = arguments.route.result;
-  JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.route.overrides);
+  const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.route.overrides);
   if (!judged.report.passed()) {
-    std::cerr << "altiplan: " << file << ": " << word_of(judged.report.verdict())
-              << ": not written\n";
-    for (const std::string& finding : judged.findings()) {
-      std::cerr << "  " << finding << '\n';
-    }
+    tell_findings(file, judged);
     return std::nullopt;
   }
-  const std::optional<Format>& format = arguments.route.options.format;
-  if (format == Format::qgc_plan || format == Format::waypoints) {
-    const host::Plan plan = host::plan_of(judged.mission);
-    if (format == Format::waypoints && !(plan.fence.empty() && plan.rally.empty())) {
-      warn("QGC WPL 110 holds the mission alone: its fence and rally points are left out");
+  const host::ExportOptions& options = arguments.route.options;
+  const host::RouteFormat& format = *options.format;
+  if (format.has_commands()) {
+    const std::optional<host::Plan> plan = judged.mission.commands.empty()
+                                               ? plan_of_line(judged, arguments.route)
+                                               : host::plan_of(judged.mission);
+    if (plan && format.zones == host::RouteFormat::Zones::none &&
+        !(plan->fence.empty() && plan->rally.empty())) {
+      warn(std::string(format.name) +
+           " holds the mission alone: its fence and rally points are left out");
     }
-    return format == Format::qgc_plan ? host::plan_text(plan) : host::waypoints_text(plan);
+    return plan ? std::optional(format.write_plan(*plan)) : std::nullopt;
   }
-  if (!format) {
-    return csv_of(judged);
+  if (format.needs_times) {
+    return format.write == host::format_named("csv").write
+               ? csv_of(judged)
+               : timed_text(judged, options, std::filesystem::path(file).stem().string());
   }
-  host::ExportSource source;
-  source.name = std::filesystem::path(file).stem().string();
-  source.route = judged.report.imported.route;
-  judged.world.request.start.position = source.route.front();
-  judged.world.request.goal = {source.route.back()};
-  judged.world.request.goal.tolerance_m = 1;
-  host::ExportOptions options = arguments.route.options;
-  options.has_times = false;
-  const host::Exported written = host::export_route(judged.world, source, options);
-  for (const std::string& message : written.messages) {
-    std::cerr << "altiplan: " << message << '\n';
-  }
-  return written.text;
+  return exported_route(judged, arguments.route).text;
 }
 
 int write_mission(const ExportArguments& arguments) {
@@ -151,7 +154,7 @@ int export_result(const ExportArguments& arguments) {
 
 void add_export(App& app, Action& action) {
   const auto prepare = [](ExportArguments& arguments) {
-    arguments.route.options.format = formats().at(format_of(arguments));
+    arguments.route.options.format = &format_of(arguments);
     if (is_mission(arguments.mission, arguments.route.result)) {
       expect_no_item_options(arguments.route, arguments.fence.has_value());
       arguments.mission.plan = checked_plan(arguments.mission, arguments.route.result);
@@ -164,8 +167,8 @@ void add_export(App& app, Action& action) {
       prepare);
   command
       .add_option("--to FORMAT", arguments.to,
-                  "format: qgc-plan, waypoints, kml, geojson, gpx or csv (default: by -o)")
-      ->check(Check::one_of({"qgc-plan", "waypoints", "kml", "geojson", "gpx", "csv"}));
+                  "format: " + host::format_names() + " (default: by -o)")
+      ->check(Check::one_of(host::format_words()));
   command.add_option("-o,--out FILE", arguments.out, "output file (default: stdout)");
   command.add_option("--fence FILE", arguments.fence,
                      "also write the zones as a fence file for Mission Planner (QGC WPL 110)");

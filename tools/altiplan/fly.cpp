@@ -201,7 +201,7 @@ void add_fly(App& app, Action& action) {
     if (arguments.route.arcs == "loiter") {
       throw UsageError{"fly follows legs between points: give --arcs points"};
     }
-    arguments.route.options.format = formats::MissionFile::Format::qgc_plan;
+    arguments.route.options.format = &host::format_named("qgc-plan");
     finish_options(arguments.route);
   };
   auto [command, arguments] = add_command<FlyArguments>(

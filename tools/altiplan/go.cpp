@@ -165,7 +165,7 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
   RouteExport route;
   route.result = folder / "result.json";
   route.overrides = arguments.overrides;
-  route.options.format = formats::MissionFile::Format::qgc_plan;
+  route.options.format = &host::format_named("qgc-plan");
   const bool is_wing = arguments.wish.turn_radius_m.has_value();
   route.options.takeoff = route.options.land = !is_wing;
   route.options.circles_at_end = is_wing;

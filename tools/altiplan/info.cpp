@@ -7,6 +7,7 @@
 #include "host/base/utf8.hpp"
 #include "host/first_route/file_info.hpp"
 #include "host/gate/plan_report.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 #include "plan_world.hpp"
@@ -26,7 +27,7 @@ host::FileInfo facts_of(const std::string& file, const InfoArguments& arguments,
                         host::Registry& registry) {
   host::FileInfo info = host::info_of(file, arguments.mission.crs, registry);
   if (info.kind == "mission") {
-    const formats::MissionFile mission = formats::read_mission(file, formats::read_file(file));
+    const formats::MissionFile mission = host::read_mission_file(file, formats::read_file(file));
     std::optional<host::Mission> world;
     if (!arguments.mission.terrain.empty() && !mission.items.empty()) {
       PlanCheck plan = arguments.mission;

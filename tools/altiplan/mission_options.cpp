@@ -3,6 +3,7 @@
 
 #include "altiplan/formats/iso_time.hpp"
 #include "altiplan/formats/mission_file.hpp"
+#include "host/import_export/route_format.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -104,7 +105,7 @@ PlanCheck checked_plan(const MissionOptions& mission, const std::string& file) {
 }
 
 bool is_mission(const MissionOptions& mission, const std::string& file) {
-  if (mission.plan.terrain.empty() && formats::is_mission_file(file)) {
+  if (mission.plan.terrain.empty() && host::is_mission_name(file)) {
     throw UsageError{file + " is a mission: add --terrain DEM, over which it is judged"};
   }
   return !mission.plan.terrain.empty();

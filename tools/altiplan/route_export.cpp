@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "route_export.hpp"
 
+#include <filesystem>
 #include <iostream>
 #include <map>
 
 #include "host/flight/events.hpp"
+#include "host/import_export/plan.hpp"
 #include "progress.hpp"
 
 namespace altiplan::cli {
@@ -53,7 +55,7 @@ void add_route_export(App& command, RouteExport& route, bool takes_missions) {
       ->required();
   command
       .add_option("--altitude FROM", route.altitude,
-                  "altitude reference: sea, ground or home (default sea)")
+                  "altitude reference: sea, ground or home (default sea, of wpml and litchi home)")
       ->check(Check::one_of({"sea", "ground", "home"}));
   command
       .add_option("--arcs FORM", route.arcs,
@@ -77,8 +79,12 @@ void add_route_export(App& command, RouteExport& route, bool takes_missions) {
 
 void expect_no_item_options(const RouteExport& route, bool has_fence) {
   const host::ExportOptions& options = route.options;
+  const host::RouteFormat* format = host::format_by_extension(route.result);
+  if (format != nullptr && !format->has_commands() && !route.flight && !has_fence) {
+    return;
+  }
   if (options.takeoff || options.land || options.home_altitude_m || options.max_items ||
-      route.altitude != "sea" || route.arcs != "points" || route.flight || has_fence) {
+      route.altitude || route.arcs != "points" || route.flight || has_fence) {
     throw UsageError{
         route.result +
         " is a mission, which has its own items: --takeoff, --land, --altitude, --arcs, "
@@ -88,7 +94,8 @@ void expect_no_item_options(const RouteExport& route, bool has_fence) {
 
 void finish_options(RouteExport& route) {
   route.options.loiters = route.arcs == "loiter";
-  route.options.altitude = altitudes().at(route.altitude);
+  route.options.altitude =
+      route.altitude ? altitudes().at(*route.altitude) : route.options.format->frames.front();
   if (const std::string problem = route.options.problem(); !problem.empty()) {
     throw UsageError{problem};
   }
@@ -130,5 +137,56 @@ std::optional<host::Exported> exported(const RouteExport& route,
                                        const std::optional<std::string>& out) {
   const std::optional<LoadedRoute> source = loaded(route, out);
   return source ? exported(*source, route) : std::nullopt;
+}
+
+host::Exported exported_route(const JudgedPlan& judged, const RouteExport& route) {
+  host::Mission world = judged.world;
+  if (const auto airframe = judged.gate.airframe) {
+    world.vehicle_type = *airframe == formats::Airframe::copter  ? host::VehicleType::copter
+                         : *airframe == formats::Airframe::plane ? host::VehicleType::plane
+                                                                 : host::VehicleType::vtol;
+  }
+  host::ExportSource source;
+  source.name = std::filesystem::path(route.result).stem().string();
+  source.route = judged.report.imported.route;
+  world.request.start.position = source.route.front();
+  world.request.goal = {source.route.back()};
+  world.request.goal.tolerance_m = 1;
+  host::ExportOptions options = route.options;
+  options.has_times = false;
+  host::Exported written = host::export_route(world, source, options);
+  for (const std::string& message : written.messages) {
+    say(message);
+  }
+  return written;
+}
+
+std::optional<host::Plan> plan_of_line(const JudgedPlan& judged, const RouteExport& route) {
+  const host::Exported written = exported_route(judged, route);
+  if (!written.text) {
+    return std::nullopt;
+  }
+  host::Plan plan = host::plan_of(written.mission);
+  if (judged.gate.firmware == formats::Firmware::px4) {
+    plan.autopilot = host::Plan::kPx4;
+  }
+  JudgedPlan flown = judged;
+  flown.mission = formats::read_mission("route.plan", host::plan_text(plan));
+  flown.report = busy("judging the plan", [&] {
+    return host::judge_plan(route.result, flown.mission, flown.world, flown.gate);
+  });
+  if (!flown.report.passed()) {
+    tell_findings(route.result + ", flown as a plan", flown);
+    return std::nullopt;
+  }
+  return plan;
+}
+
+void tell_findings(const std::string& file, const JudgedPlan& judged) {
+  std::cerr << "altiplan: " << file << ": " << word_of(judged.report.verdict())
+            << ": not written\n";
+  for (const std::string& finding : judged.findings()) {
+    std::cerr << "  " << finding << '\n';
+  }
 }
 }  // namespace altiplan::cli

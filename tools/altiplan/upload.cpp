@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+
 #include "mission_options.hpp"
 #include "plan_upload.hpp"
 #include "route_export.hpp"
@@ -27,6 +29,19 @@ std::optional<Uploaded> uploaded(const UploadArguments& arguments) {
                                             plan_to_upload(*written)})
                    : std::nullopt;
   }
+  if (host::RouteFormat const* format = host::format_by_extension(file);
+      format != nullptr && !format->has_commands()) {
+    const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.route.overrides);
+    std::cout << judged.verdict() << '\n';
+    if (!judged.report.passed()) {
+      tell_findings(file, judged);
+      return std::nullopt;
+    }
+    const std::optional<host::Plan> plan = plan_of_line(judged, arguments.route);
+    return plan ? std::optional(
+                      Uploaded{formats::read_mission("route.plan", host::plan_text(*plan)), *plan})
+                : std::nullopt;
+  }
   if (check_plan(arguments.mission.plan, arguments.route.overrides) != kDone) {
     return std::nullopt;
   }
@@ -53,7 +68,7 @@ int upload_result(const UploadArguments& arguments) {
 
 void add_upload(App& app, Action& action) {
   const auto prepare = [](UploadArguments& arguments) {
-    arguments.route.options.format = formats::MissionFile::Format::qgc_plan;
+    arguments.route.options.format = &host::format_named("qgc-plan");
     if (is_mission(arguments.mission, arguments.route.result)) {
       expect_no_item_options(arguments.route, false);
       arguments.mission.plan = checked_plan(arguments.mission, arguments.route.result);

@@ -18,9 +18,13 @@ std::string compressed(std::string_view bytes, int level) {
   return out;
 }
 
-std::optional<std::string> decompressed(std::string_view bytes, std::size_t max_bytes) {
+namespace {
+
+/// `window_bits` tells zlib's format (15) from bare deflate (-15).
+std::optional<std::string> inflated_from(std::string_view bytes, std::size_t max_bytes,
+                                         int window_bits) {
   z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) {
+  if (inflateInit2(&stream, window_bits) != Z_OK) {
     throw Error("out of memory while decompressing");
   }
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
@@ -42,5 +46,21 @@ std::optional<std::string> decompressed(std::string_view bytes, std::size_t max_
     throw Error("the compressed data is damaged");
   }
   return out;
+}
+}  // namespace
+
+std::optional<std::string> decompressed(std::string_view bytes, std::size_t max_bytes) {
+  return inflated_from(bytes, max_bytes, MAX_WBITS);
+}
+
+std::optional<std::string> inflated(std::string_view bytes, std::size_t max_bytes) {
+  return inflated_from(bytes, max_bytes, -MAX_WBITS);
+}
+
+std::string deflated(std::string_view bytes) {
+  constexpr std::size_t kHeader = 2;  // of zlib's format
+  constexpr std::size_t kTrailer = 4;
+  const std::string whole = compressed(bytes, Z_BEST_COMPRESSION);
+  return whole.substr(kHeader, whole.size() - kHeader - kTrailer);
 }
 }  // namespace altiplan::host

@@ -12,4 +12,8 @@ namespace altiplan::host {
 std::string compressed(std::string_view bytes, int level);
 /// Empty if the result would exceed `max_bytes`. Throws Error if the data is damaged.
 std::optional<std::string> decompressed(std::string_view bytes, std::size_t max_bytes);
+
+/// The same as bare deflate (RFC 1951), as archives hold it.
+std::string deflated(std::string_view bytes);
+std::optional<std::string> inflated(std::string_view bytes, std::size_t max_bytes);
 }  // namespace altiplan::host

@@ -9,6 +9,7 @@
 #include "host/config/yaml.hpp"
 #include "host/config/yaml_edit.hpp"
 #include "host/edit/movable.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/view/viewer_page.hpp"
 
 namespace altiplan::host {
@@ -154,6 +155,9 @@ PageAnswer EditSession::page() {
   }
   scene.erase("result");
   scene["edit"] = std::move(state_now);
+  for (const RouteFormat& format : route_formats()) {
+    scene["edit_formats"].push_back({format.name, format.extension});
+  }
   std::string page = viewer_page(scene);
   page.replace(page.find(kNoNetwork), kNoNetwork.size(), kOwnServer);
   return {200, "text/html; charset=utf-8", std::move(page)};

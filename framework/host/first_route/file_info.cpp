@@ -15,6 +15,7 @@
 #include "host/config/yaml.hpp"
 #include "host/first_route/search.hpp"
 #include "host/first_route/zones.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/result/result_json.hpp"
 
 namespace altiplan::host {
@@ -179,8 +180,8 @@ std::optional<FileInfo> text_info(const fs::path& file, Registry& registry) {
     return zones_info(file, airspace, registry);
   }
   const std::string extension = file.extension();
-  if (formats::is_mission_file(file.string()) || extension == ".gpx" || extension == ".mission") {
-    return info_of(formats::read_mission(file.string(), text), file.string());
+  if (extension != ".geojson" && (is_mission_name(file.string()) || extension == ".mission")) {
+    return info_of(read_mission_file(file.string(), text), file.string());
   }
   if (extension == ".geojson" || extension == ".json") {
     return features_info(file, registry);

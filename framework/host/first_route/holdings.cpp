@@ -155,6 +155,9 @@ FileInfo info_of(const formats::MissionFile& mission, const std::string& file) {
     info.facts.push_back("its items are not a route: " + mission.route_problem);
   }
   info.facts.insert(info.facts.end(), mission.notes.begin(), mission.notes.end());
+  if (mission.format == formats::MissionFile::Format::other) {
+    return info;  // which scenarios do not read
+  }
   const std::string name = exact_json_text(file);
   if (!mission.zones.empty()) {
     info.scenario.insert(info.scenario.end(), {"environment:", "  - zones: {file: " + name + "}"});

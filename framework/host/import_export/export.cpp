@@ -16,7 +16,7 @@ namespace altiplan::host {
 namespace {
 
 using formats::AltitudeFrame;
-using Format = formats::MissionFile::Format;
+using Zones = RouteFormat::Zones;
 
 /// The problem of the vertical climb and descent of what can hover, which are not part of the
 /// route: a layer that they come too near to, except the ground, where they begin and end; "" if
@@ -53,9 +53,8 @@ std::string first_wait(const Route& route) {
 }
 
 /// The mission without its items.
-formats::MissionFile frame_of(const ExportSource& source, const Placing& place, Format format) {
+formats::MissionFile frame_of(const ExportSource& source, const Placing& place) {
   formats::MissionFile file;
-  file.format = format;
   file.name = source.name;
   file.home = place.home();
   return file;
@@ -101,17 +100,17 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
 }
 
 /// Adds the zones; reports it if the format cannot hold them.
-void add_zones(const Mission& mission, const Route& route, formats::MissionFile& file,
-               std::vector<std::string>& messages) {
+void add_zones(const Mission& mission, const Route& route, const RouteFormat& format,
+               formats::MissionFile& file, std::vector<std::string>& messages) {
   const World& world = mission.known;
-  const bool flat = file.format == Format::qgc_plan;
+  const bool flat = format.zones == Zones::fence;
   Fence fence = flat ? flat_fence_of(world, route.chords(kChordTolerance)) : zones_of(world);
   messages.insert(messages.end(), fence.notes.begin(), fence.notes.end());
   if (fence.zones.empty()) {
     return;
   }
   const std::string count = counted(fence.zones.size(), "zone") + " ";
-  if (file.format == Format::waypoints || file.format == Format::gpx) {
+  if (format.zones == Zones::none) {
     messages.push_back(count + "are not written: the format cannot hold them beside a route");
     return;
   }
@@ -121,33 +120,42 @@ void add_zones(const Mission& mission, const Route& route, formats::MissionFile&
 
 void warn_of_many_items(const ExportSource& source, const Mission& mission,
                         const ExportOptions& options, std::vector<std::string>& messages) {
-  const std::size_t items = options.has_commands() ? item_count(source, mission, options) : 0;
+  const std::size_t items =
+      options.format->has_commands() ? item_count(source, mission, options) : 0;
   if (items > kStoredItems) {
     messages.push_back("warning: " + std::to_string(items) +
                        " items: PX4 stores 500, ArduPilot about 700 without an SD card; altiplan "
                        "export --max-items N drops points that the route can do without");
   }
 }
+
+const char* above(AltitudeFrame frame) {
+  return frame == AltitudeFrame::sea      ? "sea level"
+         : frame == AltitudeFrame::ground ? "ground"
+                                          : "the place of take-off";
+}
 }  // namespace
 
-bool ExportOptions::has_commands() const {
-  return format == Format::qgc_plan || format == Format::waypoints;
-}
-
 std::string ExportOptions::problem() const {
-  if (format == Format::gpx && altitude != AltitudeFrame::sea) {
-    return "gpx only has heights above sea level: give --altitude sea";
+  const std::vector<AltitudeFrame>& frames = format->frames;
+  if (std::find(frames.begin(), frames.end(), altitude) == frames.end()) {
+    std::string heights;
+    std::string words;
+    for (const AltitudeFrame frame : frames) {
+      const bool is_last = frame == frames.back();
+      heights += (heights.empty() ? "" : is_last ? " or " : ", ") + std::string(above(frame));
+      words += (words.empty() ? "" : is_last ? " or " : ", ") + std::string(name(frame));
+    }
+    return std::string(format->name) + " only has heights above " + heights + ": give --altitude " +
+           words;
   }
-  if (format == Format::kml && altitude == AltitudeFrame::home) {
-    return "kml only has heights above sea level or ground: give --altitude sea or ground";
-  }
-  if (loiters && !has_commands()) {
+  if (loiters && !format->has_commands()) {
     return "--arcs loiter needs qgc-plan or waypoints: other formats have no commands";
   }
   if (loiters && altitude == AltitudeFrame::ground) {
     return "--arcs loiter needs --altitude sea or home: the ground below a circle has many heights";
   }
-  if ((takeoff || land) && !has_commands()) {
+  if ((takeoff || land) && !format->has_commands()) {
     return "--takeoff and --land need qgc-plan or waypoints: other formats have no commands";
   }
   return "";
@@ -191,7 +199,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
         "warning: the moving obstacles were judged for a route that leaves its first point at the "
         "scenario's start");
   }
-  if (options.format && !home_altitude(mission, options, source.route.front())) {
+  if (!options.format->is_local() && !home_altitude(mission, options, source.route.front())) {
     notes.emplace_back(
         "the world has no ground below the start: home is written at the start's own height "
         "(--home-altitude overrides it)");
@@ -205,12 +213,17 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   if (mission.site.has_start_time) {
     text.start_time_s = mission.site.start_time_s;
   }
-  if (options.format) {
-    text.mission = frame_of(source, place, *options.format);
-    add_zones(mission, source.route, text.mission, notes);
+  text.has_position = mission.truth.frame().has_position();
+  text.mission = frame_of(source, place);
+  if (!options.format->is_local()) {
+    add_zones(mission, source.route, *options.format, text.mission, notes);
   }
   result = written_soundly(mission, source, place, options, std::move(text));
   if (result.text) {
+    if (options.format->notes != nullptr) {
+      const std::vector<std::string> own = options.format->notes(result.mission);
+      notes.insert(notes.begin(), own.begin(), own.end());
+    }
     warn_of_many_items(source, mission, options, notes);
     result.messages.insert(result.messages.end(), notes.begin(), notes.end());
     if (options.altitude == AltitudeFrame::ground) {

@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "host/flight/track_judge.hpp"
-#include "host/import_export/mission_text.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
 
 namespace altiplan::host {
 
 struct ExportOptions {
-  /// None: CSV, which needs no georeference.
-  std::optional<formats::MissionFile::Format> format;
+  const RouteFormat* format = &format_named("csv");
   formats::AltitudeFrame altitude = formats::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
@@ -26,8 +25,6 @@ struct ExportOptions {
   std::optional<std::size_t> max_items;
   bool has_times = true;  ///< of a mission only a span is known, which maps cannot show
 
-  /// True of a format for autopilots, with commands such as take-offs.
-  bool has_commands() const;
   /// The reason why the options cannot be combined; "" if they can.
   std::string problem() const;
 };

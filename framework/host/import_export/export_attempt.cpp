@@ -5,14 +5,12 @@
 #include "host/base/words.hpp"
 #include "host/import_export/export_notes.hpp"
 #include "host/import_export/imported_route.hpp"
-#include "host/import_export/route_csv.hpp"
 #include "host/judge/judge.hpp"
 
 namespace altiplan::host {
 namespace {
 
 using formats::MissionItem;
-using Format = formats::MissionFile::Format;
 
 /// The first suits autopilots, which store degrees to seven decimals (1 cm); the last matches the
 /// judge's tolerance.
@@ -71,25 +69,6 @@ Request ending_with(Request request, const Route& route) {
     request.goal = {route.back(), 0, std::nullopt, std::nullopt};
   }
   return request;
-}
-
-const char* file_name(const std::optional<Format>& format) {
-  if (!format) {
-    return "route.csv";
-  }
-  switch (*format) {
-    case Format::qgc_plan:
-      return "route.plan";
-    case Format::waypoints:
-      return "route.waypoints";
-    case Format::kml:
-      return "route.kml";
-    case Format::gpx:
-      return "route.gpx";
-    case Format::geojson:
-      break;
-  }
-  return "route.geojson";
 }
 }  // namespace
 
@@ -174,7 +153,8 @@ struct Attempt {
       decimals = text.decimals = each;
       const std::string now = as_text();
       const ImportedRoute read =
-          read_imported_route(file_name(options.format), now, mission.truth, mission.request);
+          read_imported_route(std::string("route") + options.format->extension, now, mission.truth,
+                              mission.request, place.home());
       const std::string problem_now =
           problem_of(mission, source, read.route,
                      without_tangents ? ending_with(request, read.route) : request);
@@ -187,20 +167,12 @@ struct Attempt {
   }
 
   std::string as_text() {
-    if (!options.format) {
-      return route_csv_text(csv_rows(), mission.truth.frame().has_position(), text.decimals);
-    }
     text.mission.items = items_of(written.places, mission, place, options, timing);
-    return mission_text(text);
-  }
-
-  std::vector<CsvRow> csv_rows() const {
-    std::vector<CsvRow> rows;
-    for (std::size_t n = 0; n < timing.size(); ++n) {
-      const Vec3& at = written.places[n].at;
-      rows.push_back({timing[n].time_s, {}, at, place(at)});
+    text.local.clear();
+    for (const MissionPlace& each : written.places) {
+      text.local.push_back(each.at);
     }
-    return rows;
+    return options.format->write(text);
   }
 
   Exported exported(std::string now, const Decimals& decimals) const {

@@ -101,7 +101,7 @@ std::vector<std::string> notes_on(const WrittenRoute& written, const ExportOptio
                     "the ground");
   }
   note_autopilots(written, notes);
-  if (options.has_commands() && mission.truth.frame().has_position()) {
+  if (options.format->has_commands() && mission.truth.frame().has_position()) {
     note_long_legs(written, mission.truth.frame(), notes);
   }
   return notes;

@@ -9,7 +9,7 @@
 #include "altiplan/formats/input_file.hpp"
 #include "host/config/mission_key.hpp"
 #include "host/import_export/joined_route.hpp"
-#include "host/import_export/route_csv.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/result/stored_result.hpp"
 
 namespace altiplan::host {
@@ -18,8 +18,6 @@ namespace {
 using formats::AltitudeFrame;
 using formats::MissionItem;
 using formats::MissionPoint;
-
-bool is_csv(const std::string& file) { return std::filesystem::path(file).extension() == ".csv"; }
 
 const char* reference_of(AltitudeFrame frame) {
   return frame == AltitudeFrame::sea      ? "above sea level"
@@ -153,28 +151,27 @@ ImportedRoute route_in(const formats::MissionFile& mission, const World& world,
 }
 
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
-                                  const World& world, const Request& request) {
-  if (!is_csv(file)) {
-    return route_in(formats::read_mission(file, text), world, request, file);
+                                  const World& world, const Request& request,
+                                  const std::optional<MissionPoint>& home) {
+  std::optional<Polyline> points = read_local_route(file, text);
+  if (!points) {
+    formats::MissionFile mission = read_mission_file(file, text);
+    if (!mission.home) {
+      mission.home = home;
+    }
+    return route_in(mission, world, request, file);
   }
-  Polyline points = read_route_csv(file, text);
-  expect_reachable(points, file);
-  undo_rounding(points.front(), request.start.position);
-  undo_rounding(points.front(), request.start.position, request.start.loiter);
-  undo_rounding(points.back(), request.goal.position, request.goal.loiter);
-  return {std::move(points), {}};
+  expect_reachable(*points, file);
+  undo_rounding(points->front(), request.start.position);
+  undo_rounding(points->front(), request.start.position, request.start.loiter);
+  undo_rounding(points->back(), request.goal.position, request.goal.loiter);
+  return {std::move(*points), {}};
 }
 
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission) {
-  const Request& request = mission.request;
-  const World& world = mission.truth;
-  if (is_csv(file)) {
-    return read_imported_route(file, formats::read_file(file), world, request);
-  }
-  const std::filesystem::path ending = std::filesystem::path(file).extension();
-  if (formats::is_mission_file(file) || ending == ".gpx" || ending == ".geojson" ||
-      ending == ".mission") {
-    return route_in(formats::read_mission(file), world, request, file);
+  if (format_by_extension(file) != nullptr || is_mission_name(file) ||
+      std::filesystem::path(file).extension() == ".mission") {
+    return read_imported_route(file, formats::read_file(file), mission.truth, mission.request);
   }
   const std::string expected =
       "a route as a list of [x, y, z] in metres, or a mission whose name ends in .plan, "

@@ -33,10 +33,11 @@ Vec3 to_local(const formats::MissionPoint& point, const std::optional<formats::M
 ImportedRoute route_in(const formats::MissionFile& mission, const World& world,
                        const Request& request, const std::string& file);
 
-/// Reads a route in any format that altiplan writes: JSON ([[x, y, z], …] or a result), CSV, or a
-/// mission file. Undoes the rounding of the start except in JSON.
+/// Reads a route in any format that altiplan writes: JSON ([[x, y, z], …] or a result), or one of
+/// the table of formats. Undoes the rounding of the start except in JSON.
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission);
-/// The same from a text in memory, not JSON.
+/// The same from a text in memory, not JSON; `home` is that of a format without one.
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
-                                  const World& world, const Request& request);
+                                  const World& world, const Request& request,
+                                  const std::optional<formats::MissionPoint>& home = {});
 }  // namespace altiplan::host

@@ -4,8 +4,10 @@
 #include <charconv>
 #include <cmath>
 
+#include "altiplan/formats/iso_time.hpp"
 #include "altiplan/frame.hpp"
 #include "altiplan/geometry.hpp"
+#include "host/import_export/map_parts.hpp"
 
 namespace altiplan::host {
 
@@ -44,20 +46,23 @@ formats::Polygon polygon_of(const formats::Zone& zone) {
   return polygon;
 }
 
-std::string mission_text(const MissionText& mission) {
-  using Format = formats::MissionFile::Format;
-  switch (mission.mission.format) {
-    case Format::qgc_plan:
-      return qgc_plan_text(mission);
-    case Format::waypoints:
-      return waypoints_text(mission);
-    case Format::kml:
-      return kml_text(mission);
-    case Format::gpx:
-      return gpx_text(mission);
-    case Format::geojson:
-      break;
+const char* words_of(formats::AltitudeFrame frame) {
+  return frame == formats::AltitudeFrame::sea      ? "above mean sea level"
+         : frame == formats::AltitudeFrame::ground ? "above the ground below each point"
+                                                   : "relative to the home position";
+}
+
+const char* role_of(const formats::Zone& zone) { return zone.keeps_in() ? "keep_in" : "keep_out"; }
+
+std::optional<double> altitude_of(const formats::ZoneLimit& limit) {
+  return limit.datum == formats::ZoneLimit::Datum::none ? std::nullopt
+                                                        : std::optional(limit.metres);
+}
+
+std::string iso_time(const MissionText& text, std::size_t n) {
+  if (!text.start_time_s || n >= text.times_s.size()) {
+    return "";
   }
-  return geojson_text(mission);
+  return formats::iso_time(*text.start_time_s + text.times_s[n]);
 }
 }  // namespace altiplan::host

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/formats/mission_file.hpp"
+#include "altiplan/route.hpp"
 #include "host/base/words.hpp"
 #include "host/config/scenario_file.hpp"
 
@@ -17,10 +18,11 @@ struct Decimals {
   int metres = 3;
 };
 
-/// A mission and the settings of its text.
+/// A route, or a mission, and the settings of its text.
 struct MissionText {
-  formats::MissionFile
-      mission;  ///< its format is the one to write; all items have one altitude frame
+  formats::MissionFile mission;  ///< all items have one altitude frame
+  Polyline local;                ///< the places of its items in the world's frame
+  bool has_position = true;      ///< that frame is on the Earth
   double speed_mps = 15;
   VehicleType vehicle = VehicleType::copter;
   double climb_deg = 10;  ///< of an aeroplane's take-off
@@ -29,16 +31,6 @@ struct MissionText {
   std::vector<double> times_s;
   std::optional<double> start_time_s;  ///< of the route, since 1970-01-01 UTC
 };
-
-// Each writes one format; what it cannot hold is left out, and reported by the caller.
-std::string qgc_plan_text(const MissionText& mission);
-std::string waypoints_text(const MissionText& mission);
-std::string kml_text(const MissionText& mission);
-std::string gpx_text(const MissionText& mission);
-std::string geojson_text(const MissionText& mission);
-
-/// Writes in the mission's format.
-std::string mission_text(const MissionText& mission);
 
 /// The value of `rounded_text`.
 double rounded(double value, int decimals);

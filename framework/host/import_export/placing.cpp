@@ -26,10 +26,10 @@ std::optional<double> home_altitude(const Mission& mission, const ExportOptions&
 }
 
 void expect_possible(const Mission& mission, const ExportOptions& options, const Vec3& start) {
-  if (options.format && !mission.truth.frame().has_position()) {
+  if (!options.format->is_local() && !mission.truth.frame().has_position()) {
     throw Error(
         "the scenario's world is not georeferenced: add a georeferenced layer, or "
-        "frame: {origin_lonlat: …}; csv needs neither");
+        "frame: {origin_lonlat: …}; csv and mcap need neither");
   }
   if (options.altitude == AltitudeFrame::ground && !mission.truth.has_ground()) {
     throw Error("--altitude ground needs a world with ground");

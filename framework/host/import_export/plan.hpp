@@ -40,8 +40,10 @@ struct PlanItem {
 
 /// What a vehicle is given: its mission, its fence and its rally points.
 struct Plan {
-  int autopilot = 3;  ///< MAV_AUTOPILOT: ArduPilot, which supports all three altitude frames
-  int vehicle = 2;    ///< MAV_TYPE: a quadrotor
+  static constexpr int kArduPilot = 3;  ///< of MAV_AUTOPILOT
+  static constexpr int kPx4 = 12;
+  int autopilot = kArduPilot;  ///< which supports all three altitude frames
+  int vehicle = 2;             ///< MAV_TYPE: a quadrotor
   double speed_mps = 15;
   std::optional<formats::MissionPoint> home;  ///< above sea level
   std::vector<PlanItem> items;

@@ -4,6 +4,7 @@
 
 #include "airspace_parts.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
+#include "altiplan/map_system.hpp"
 #include "xml_parts.hpp"
 
 namespace altiplan::formats {
@@ -65,6 +66,40 @@ std::string_view altitude_mode(const pugi::xml_node& geometry) {
   return mode;
 }
 
+/// The height of a waypoint of DJI's WPML, whose Point has none; none of any other Placemark.
+std::optional<MissionPoint> wayline_point(const pugi::xml_node& geometry, const Coordinate& at) {
+  const pugi::xml_node placemark = geometry.parent();
+  const std::string_view height = text_of(placemark, "executeHeight");
+  if (height.empty()) {
+    return std::nullopt;
+  }
+  const std::string_view mode = text_of(placemark.parent(), "executeHeightMode");
+  const auto [lon, lat] = at.lonlat;
+  MissionPoint point{lon, lat, number_of(height), AltitudeFrame::home};
+  if (mode == "WGS84") {
+    point.altitude_m -= geoid_height(lon, lat);
+    point.frame = AltitudeFrame::sea;
+  } else if (mode != "relativeToStartPoint") {
+    throw Error("expected the executeHeightMode relativeToStartPoint or WGS84, found '" +
+                std::string(mode.substr(0, 40)) + "'");
+  }
+  expect_altitude(point.altitude_m);
+  return point;
+}
+
+/// The place of take-off of WPML, above sea level: latitude, longitude, height above the ellipsoid.
+MissionPoint take_off_place(std::string_view text) {
+  double parts[3] = {0, 0, 0};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    parts[n] = number_of(trimmed(text.substr(0, comma)));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  expect_position(parts[1], parts[0]);
+  expect_altitude(parts[2]);
+  return {parts[1], parts[0], parts[2] - geoid_height(parts[1], parts[0]), AltitudeFrame::sea};
+}
+
 /// Data of a Placemark apart from its geometry: its name, and our own limits of a zone.
 struct Placemark {
   std::string name;
@@ -104,6 +139,12 @@ class KmlReader {
       add_points(node, line_);
     } else if (name == "Point") {
       add_points(node, points_);
+    } else if (name == "takeOffRefPoint") {
+      mission_.home = take_off_place(trimmed(node.text().get()));
+    } else if (name == "waypointTurnMode") {
+      expect_flown_as_drawn(node, "toPointAndStopWithDiscontinuityCurvature");
+    } else if (name == "finishAction") {
+      expect_flown_as_drawn(node, "noAction");
     } else {
       links_ += name == "NetworkLink";
       return false;
@@ -115,7 +156,8 @@ class KmlReader {
     if (lines_ > 1) {
       mission_.route_problem =
           "expected one LineString as the route, found " + std::to_string(lines_);
-    } else if (const Points& route = lines_ > 0 ? line_ : points_; route.without_height) {
+    } else if (const Points& route = lines_ > 0 ? line_ : points_;
+               route.without_height && mission_.route_problem.empty()) {
       mission_.route_problem =
           "a route needs heights: altitudeMode absolute or relativeToGround, and three numbers per "
           "point";
@@ -140,16 +182,32 @@ class KmlReader {
     bool without_height = false;
   };
 
+  /// Other words of WPML cut corners or fly on: what is flown is then not what the points say.
+  void expect_flown_as_drawn(const pugi::xml_node& node, std::string_view word) {
+    const std::string_view found = trimmed(node.text().get());
+    if (found != word && mission_.route_problem.empty()) {
+      mission_.route_problem = "how DJI flies the " + std::string(local_name(node)) + " '" +
+                               std::string(found.substr(0, 60)) + "' is not judged, only " +
+                               std::string(word);
+    }
+  }
+
   static void add_points(const pugi::xml_node& geometry, Points& points) {
     const std::string_view mode = altitude_mode(geometry);
     const AltitudeFrame frame =
         mode == "relativeToGround" ? AltitudeFrame::ground : AltitudeFrame::sea;
     for (const Coordinate& c : coordinates_of(geometry)) {
-      points.without_height |= mode == "clampToGround" || !c.has_altitude;
-      points.items.push_back({MissionItem::Kind::waypoint,
-                              {c.lonlat[0], c.lonlat[1], c.altitude_m, frame},
-                              0,
-                              "point " + std::to_string(points.items.size() + 1)});
+      const std::optional<MissionPoint> wayline = wayline_point(geometry, c);
+      if (wayline && !points.items.empty() && wayline->lon == points.items.back().at.lon &&
+          wayline->lat == points.items.back().at.lat &&
+          wayline->altitude_m == points.items.back().at.altitude_m) {
+        continue;  // where the next wayline begins
+      }
+      points.without_height |= !wayline && (mode == "clampToGround" || !c.has_altitude);
+      points.items.push_back(
+          {MissionItem::Kind::waypoint,
+           wayline.value_or(MissionPoint{c.lonlat[0], c.lonlat[1], c.altitude_m, frame}), 0,
+           "point " + std::to_string(points.items.size() + 1)});
     }
   }
 

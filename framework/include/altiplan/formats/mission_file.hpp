@@ -47,7 +47,7 @@ struct MissionItem {
 };
 
 struct MissionFile {
-  enum class Format { qgc_plan, waypoints, kml, gpx, geojson };
+  enum class Format { qgc_plan, waypoints, kml, gpx, geojson, other };
   Format format = Format::qgc_plan;
   std::string name;
   std::optional<MissionPoint> home;      ///< above sea level

@@ -5,8 +5,6 @@ import {build_placing} from './placing.js';
 import {kTools} from './tools.js';
 
 const kVerbs = {plan: ['planner', 'local_planner'], smooth: ['smoother'], fly: ['local_planner']};
-const kFormats = [['qgc-plan', 'plan'], ['waypoints', 'waypoints'], ['kml', 'kml'],
-  ['geojson', 'geojson'], ['gpx', 'gpx'], ['csv', 'csv']];
 // Of the start and the ends, the keys that a form offers beside those that are written.
 const kEnds = {
   start: [{key: 'heading_deg', unit: 'deg', doc: 'heading at the start'}],
@@ -33,7 +31,7 @@ export function build_panel(view, world, store, editor, message) {
   panel.append(history, message, element('h2', {}, 'Add'), add_buttons(placing), placing.hint,
     element('h2', {}, 'Change'), items, element('h2', {}, 'Pipelines'), steps,
     element('h2', {}, 'Constraints'), limits, element('h2', {}, 'Take it along'),
-    leaving(editor), command);
+    leaving(editor, world.scene.edit_formats), command);
   let plugins = [];
   const reflect = () => {
     const focused = document.activeElement?.closest('#edit [data-field]')?.dataset.field;
@@ -189,9 +187,10 @@ function new_constraint(tree, nth, editor, plugins) {
   return element('div', {className: 'step'}, name, limits);
 }
 
-function leaving(editor) {
+/** `formats`: name and extension of each. */
+function leaving(editor, formats) {
   const format = element('select', {id: 'format', ariaLabel: 'Format'},
-    kFormats.map(([name]) => element('option', {value: name}, name)));
+    formats.map(([name]) => element('option', {value: name}, name)));
   const address = element('input', {type: 'text', id: 'address', placeholder: 'udp:127.0.0.1:14550',
     ariaLabel: 'Address of the autopilot'});
   const pipeline = () => Math.min(editor.store.state.selected, editor.state.pipelines.length - 1);
@@ -199,9 +198,9 @@ function leaving(editor) {
     button('Export', 'As altiplan export writes it', async () => {
       const blob = await editor.export_to(format.value, pipeline());
       if (!blob) return;
-      const [, extension] = kFormats.find(([name]) => name === format.value);
+      const [, extension] = formats.find(([name]) => name === format.value);
       const link = element('a', {href: URL.createObjectURL(blob),
-        download: `${editor.state.pipelines[pipeline()].name}.${extension}`});
+        download: `${editor.state.pipelines[pipeline()].name}${extension}`});
       link.click();
       URL.revokeObjectURL(link.href);
     }, {id: 'export'})),

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "host/base/json.hpp"
+#include "host/import_export/format_functions.hpp"
 #include "host/import_export/plan.hpp"
 
 namespace altiplan::host {

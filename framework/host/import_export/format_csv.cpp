@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "host/import_export/format_functions.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -122,5 +123,13 @@ std::string route_csv_text(const std::vector<CsvRow>& rows, bool has_position,
     out += "," + rounded_text(at.altitude_m, decimals.metres) + "," + name(at.frame) + "\n";
   }
   return out;
+}
+
+std::string csv_text(const MissionText& text) {
+  std::vector<CsvRow> rows;
+  for (std::size_t n = 0; n < text.local.size(); ++n) {
+    rows.push_back({text.times_s.at(n), {}, text.local[n], text.mission.items.at(n).at});
+  }
+  return route_csv_text(rows, text.has_position, text.decimals);
 }
 }  // namespace altiplan::host
