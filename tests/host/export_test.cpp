@@ -435,6 +435,19 @@ TEST(ImportedRoute, FramesAreResolvedInTheWorld) {
   EXPECT_THROW(to_local({-84.3, 36.5, 7, AltitudeFrame::ground}, home, World()), Error);
 }
 
+TEST(ImportedRoute, PapersListWhatLiesBetweenTheEnds) {
+  Request request;
+  request.start.position = {0, 0, 5};
+  request.goal.position = {9, 9, 6};
+  const ImportedRoute read =
+      read_imported_route("r.csv", "x,y,z\n1,2,3\n4,5,6\n", World(), request);
+  EXPECT_EQ(read.route, Route({{0, 0, 5}, {1, 2, 3}, {4, 5, 6}, {9, 9, 6}}));
+  // With metres beside them those are the route.
+  EXPECT_EQ(
+      read_imported_route("r.csv", "x,y,z,x_m,y_m,z_m\n1,2,3,4,5,6\n", World(), request).route,
+      Route({{4, 5, 6}}));
+}
+
 TEST(ImportedRoute, RefusesTablesWithTheLine) {
   const auto refusal = [](const std::string& text) {
     try {

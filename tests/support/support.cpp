@@ -123,10 +123,14 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
 
 std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
                                           const Frame& frame) {
-  static const World kEmpty;
+  return make_objective(name, yaml, World().with_frame(frame));
+}
+
+std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
+                                          const World& before) {
   Site site;
-  site.before = &kEmpty;
-  site.frame = frame;
+  site.before = &before;
+  site.frame = before.frame();
   const Value value = parameters(yaml);
   return entry("objective", name).objective(&value, site);
 }

@@ -16,6 +16,7 @@ TRAITS = {
     "loiters": "plans from and to loiter circles",
     "avoids_obstacles": "no leg through a known obstacle",
     "objectives": "minimises any objective that does not depend on the time",
+    "whole_routes": "minimises any objective, also of the time and of waypoints",
 }
 
 

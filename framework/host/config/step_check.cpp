@@ -78,7 +78,7 @@ void check_minimises(Checker& checker, const Config& config, const StepEntry& st
       return;  // its parameters are refused
     }
   }
-  if (!traits.objectives) {
+  if (!traits.objectives && !traits.whole_routes) {
     checker.problem(place_of(tree, "plan"), step.path + ".plan",
                     "the " + kind + " '" + step.plugin +
                         "' minimises length alone, not the objective '" + objective->plugin +

@@ -158,7 +158,8 @@ std::vector<std::pair<const char*, bool>> listed(const Traits& traits) {
           {"spatial", traits.spatial},
           {"loiters", traits.loiters},
           {"avoids_obstacles", traits.avoids_obstacles},
-          {"objectives", traits.objectives}};
+          {"objectives", traits.objectives},
+          {"whole_routes", traits.whole_routes}};
 }
 
 std::optional<Traits> traits_of(const PluginEntry& entry) {

@@ -24,15 +24,26 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// Indices of the columns x_m, y_m and z_m.
-std::array<std::size_t, 3> columns_of(const std::vector<std::string_view>& head) {
+using Names = std::array<std::string_view, 3>;
+constexpr Names kOfWorld{"x_m", "y_m", "z_m"};
+constexpr Names kOfPapers{"x", "y", "z"};
+
+bool has(const std::vector<std::string_view>& head, const Names& names) {
+  return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
+    return std::find(head.begin(), head.end(), name) != head.end();
+  });
+}
+
+std::array<std::size_t, 3> columns_of(const std::vector<std::string_view>& head,
+                                      const Names& names) {
   std::array<std::size_t, 3> columns{};
-  static constexpr std::array<std::string_view, 3> kNames{"x_m", "y_m", "z_m"};
   for (std::size_t n = 0; n < 3; ++n) {
-    const auto found = std::find(head.begin(), head.end(), kNames[n]);
+    const auto found = std::find(head.begin(), head.end(), names[n]);
     if (found == head.end()) {
-      throw Error("expected a first line that names the columns x_m, y_m and z_m, found no '" +
-                  std::string(kNames[n]) + "'");
+      throw Error(
+          "expected a first line that names the columns x_m, y_m and z_m (or x, y and z, of the "
+          "waypoints between start and goal, with heights above ground), found no '" +
+          std::string(names[n]) + "'");
     }
     columns[n] = std::size_t(found - head.begin());
   }
@@ -61,8 +72,8 @@ void expect_frame(const std::vector<std::string_view>& head,
 }
 }  // namespace
 
-Polyline read_route_csv(const std::string& file, const std::string& text) {
-  Polyline route;
+LocalRoute read_route_csv(const std::string& file, const std::string& text) {
+  LocalRoute route;
   std::vector<std::string_view> head;
   std::array<std::size_t, 3> columns{};
   std::size_t line = 0;
@@ -80,7 +91,8 @@ Polyline read_route_csv(const std::string& file, const std::string& text) {
       }
       const std::vector<std::string_view> cells = cells_of(content);
       if (head.empty()) {
-        columns = columns_of(cells);
+        route.is_inner = !has(cells, kOfWorld) && has(cells, kOfPapers);
+        columns = columns_of(cells, route.is_inner ? kOfPapers : kOfWorld);
         head = cells;
         continue;
       }
@@ -89,13 +101,13 @@ Polyline read_route_csv(const std::string& file, const std::string& text) {
                     std::to_string(cells.size()));
       }
       expect_frame(head, cells);
-      route.emplace_back(metres_of(cells[columns[0]]), metres_of(cells[columns[1]]),
-                         metres_of(cells[columns[2]]));
+      route.points.emplace_back(metres_of(cells[columns[0]]), metres_of(cells[columns[1]]),
+                                metres_of(cells[columns[2]]));
     }
   } catch (const Error& error) {
     throw Error(file + ":" + std::to_string(line) + ": " + error.what());
   }
-  if (route.empty()) {
+  if (route.points.empty()) {
     throw Error(file + ": it contains no route");
   }
   return route;

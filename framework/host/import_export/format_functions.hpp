@@ -35,6 +35,6 @@ formats::MissionFile read_czml(const std::string& file, const std::string& text)
 bool is_czml(std::string_view text);
 
 std::string mcap_text(const MissionText& route);
-Polyline read_mcap(const std::string& file, const std::string& text);
+LocalRoute read_mcap(const std::string& file, const std::string& text);
 bool is_mcap(std::string_view text);
 }  // namespace altiplan::host

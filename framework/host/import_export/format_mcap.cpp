@@ -264,9 +264,9 @@ std::string mcap_text(const MissionText& text) {
   return file.text();
 }
 
-Polyline read_mcap(const std::string& file, const std::string& text) {
+LocalRoute read_mcap(const std::string& file, const std::string& text) {
   try {
-    return first_path(text);
+    return {first_path(text)};
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }

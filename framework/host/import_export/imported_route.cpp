@@ -150,22 +150,45 @@ ImportedRoute route_in(const formats::MissionFile& mission, const World& world,
   return result;
 }
 
+namespace {
+/// From the start to the goal past points whose heights are above ground.
+Polyline between_ends(Polyline points, const World& world, const Request& request,
+                      const std::string& file) {
+  for (std::size_t i = 0; i < points.size() && world.has_ground(); ++i) {
+    const std::optional<double> ground = world.ground(points[i].x(), points[i].y());
+    if (!ground) {
+      throw Error(file + ": waypoint " + std::to_string(i + 1) +
+                  " has a height above ground, and the world has no ground there");
+    }
+    points[i].z() += *ground;
+  }
+  points.insert(points.begin(), request.start.position);
+  points.push_back(request.goal.position);
+  return points;
+}
+}  // namespace
+
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,
                                   const World& world, const Request& request,
                                   const std::optional<MissionPoint>& home) {
-  std::optional<Polyline> points = read_local_route(file, text);
-  if (!points) {
+  std::optional<LocalRoute> read = read_local_route(file, text);
+  if (!read) {
     formats::MissionFile mission = read_mission_file(file, text);
     if (!mission.home) {
       mission.home = home;
     }
     return route_in(mission, world, request, file);
   }
-  expect_reachable(*points, file);
-  undo_rounding(points->front(), request.start.position);
-  undo_rounding(points->front(), request.start.position, request.start.loiter);
-  undo_rounding(points->back(), request.goal.position, request.goal.loiter);
-  return {std::move(*points), {}};
+  Polyline& points = read->points;
+  expect_reachable(points, file);
+  if (read->is_inner) {
+    return {between_ends(std::move(points), world, request, file),
+            {"waypoints between start and goal, with heights above ground"}};
+  }
+  undo_rounding(points.front(), request.start.position);
+  undo_rounding(points.front(), request.start.position, request.start.loiter);
+  undo_rounding(points.back(), request.goal.position, request.goal.loiter);
+  return {std::move(points), {}};
 }
 
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission) {

@@ -34,7 +34,8 @@ ImportedRoute route_in(const formats::MissionFile& mission, const World& world,
                        const Request& request, const std::string& file);
 
 /// Reads a route in any format that altiplan writes: JSON ([[x, y, z], …] or a result), or one of
-/// the table of formats. Undoes the rounding of the start except in JSON.
+/// the table of formats. Undoes the rounding of the start except in JSON. A CSV of columns x, y and
+/// z has the waypoints between start and goal, with heights above ground.
 ImportedRoute read_imported_route(const std::string& file, const Mission& mission);
 /// The same from a text in memory, not JSON; `home` is that of a format without one.
 ImportedRoute read_imported_route(const std::string& file, const std::string& text,

@@ -9,9 +9,17 @@
 
 namespace altiplan::host {
 
-/// Reads the columns x_m, y_m and z_m of a table whose first line names its columns; ignores
-/// others. Throws Error with file and line.
-Polyline read_route_csv(const std::string& file, const std::string& text);
+/// A route in metres of the world's frame.
+struct LocalRoute {
+  Polyline points;
+  /// Its columns were x, y and z: the waypoints between the ends of a scenario, as papers number
+  /// them, with heights above ground. Else they were x_m, y_m and z_m: the route in the world.
+  bool is_inner = false;
+};
+
+/// Reads these columns of a table whose first line names its columns; ignores others. Throws Error
+/// with file and line.
+LocalRoute read_route_csv(const std::string& file, const std::string& text);
 
 struct CsvRow {
   double time_s = 0;

@@ -179,7 +179,7 @@ formats::MissionFile read_mission_file(const std::string& file) {
   return read_mission_file(file, formats::read_file(file));
 }
 
-std::optional<Polyline> read_local_route(const std::string& file, const std::string& text) {
+std::optional<LocalRoute> read_local_route(const std::string& file, const std::string& text) {
   const RouteFormat* format = recognised(text);
   if (format == nullptr) {
     format = format_by_extension(file);

@@ -8,6 +8,7 @@
 
 #include "host/import_export/mission_text.hpp"
 #include "host/import_export/plan.hpp"
+#include "host/import_export/route_csv.hpp"
 
 namespace altiplan::host {
 
@@ -28,7 +29,7 @@ struct RouteFormat {
   /// Throws Error, which begins with the file's name, for damaged content. Null of a format that
   /// holds the route in metres of the world's frame.
   formats::MissionFile (*read)(const std::string& file, const std::string& text) = nullptr;
-  Polyline (*read_local)(const std::string& file, const std::string& text) = nullptr;
+  LocalRoute (*read_local)(const std::string& file, const std::string& text) = nullptr;
   /// True of content in this format, none where the file's name tells.
   bool (*recognises)(std::string_view text) = nullptr;
   /// What its programs make of the route otherwise than it was judged; none: nothing is known.
@@ -55,7 +56,7 @@ std::vector<std::string> format_extensions();
 formats::MissionFile read_mission_file(const std::string& file, const std::string& text);
 formats::MissionFile read_mission_file(const std::string& file);
 /// The route of content in a local format, none for other content.
-std::optional<Polyline> read_local_route(const std::string& file, const std::string& text);
+std::optional<LocalRoute> read_local_route(const std::string& file, const std::string& text);
 /// True if the file's extension is one of missions alone.
 bool is_mission_name(const std::string& file);
 }  // namespace altiplan::host

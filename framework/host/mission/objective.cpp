@@ -43,6 +43,23 @@ class WeightedSum final : public Objective {
     }
     return sum;
   }
+  /// The terms of all, each times its weight.
+  std::vector<double> do_costs(const Route& route, const Request& request) const override {
+    std::vector<double> all;
+    for (const Term& term : terms_) {
+      for (const double cost : term.objective->costs(route, request)) {
+        all.push_back(term.weight * cost);
+      }
+    }
+    return all;
+  }
+  double do_min_cost(const Request& request) const override {
+    double sum = 0;
+    for (const Term& term : terms_) {
+      sum += term.weight * term.objective->min_cost(request);
+    }
+    return sum;
+  }
   /// That of all terms; none where they differ: the weights convert them.
   std::string do_unit() const override {
     const std::string unit = terms_.front().objective->unit();
@@ -60,6 +77,7 @@ class WeightedSum final : public Objective {
       any.place = any.place || its.place;
       any.heading = any.heading || its.heading;
       any.time = any.time || its.time;
+      any.waypoints = any.waypoints || its.waypoints;
     }
     return any;
   }
@@ -153,7 +171,8 @@ MetricValues measured(const std::vector<std::pair<double, Vec3>>& track, const R
                       const std::vector<Metric>& metrics) {
   MetricValues values;
   for (const Metric& metric : metrics) {
-    double cost = 0;
+    // The samples of a flight are no waypoints.
+    double cost = metric.of->traits().waypoints ? kInfinity : 0;
     for (std::size_t i = 1; i < track.size(); ++i) {
       cost += metric.of->cost(Leg::straight(track[i - 1].second, track[i].second),
                               track[i - 1].first - track.front().first, request);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "altiplan/route.hpp"
 
@@ -9,7 +10,7 @@ namespace altiplan {
 
 struct Request;
 
-/// What a route is to have least of: a cost of its legs, added up.
+/// What a route is to have least of: a cost of its legs, added up, or of its waypoints as a whole.
 ///
 /// Contract:
 ///  1. Pure and const: callable from any number of threads.
@@ -19,12 +20,17 @@ struct Request;
 ///     places in the request's volume and all times. So it is at most the cost of any route.
 ///  4. cost depends on nothing that traits denies: the place (a leg moved elsewhere costs the
 ///     same), the heading (so does the leg flown backwards), the time.
+///  5. costs are at least 0. Without the trait `waypoints` their sum is that of cost over the legs;
+///     with it cost and bound serve those who look at single legs, and tell nothing of a route but
+///     that an infinite leg makes it infinite. min_cost is at most the sum of the costs of any
+///     route between the request's ends.
 class ALTIPLAN_API Objective {
  public:
   struct Traits {
     bool place = true;
     bool heading = false;
     bool time = false;
+    bool waypoints = false;
   };
 
   virtual ~Objective();
@@ -33,10 +39,15 @@ class ALTIPLAN_API Objective {
   double cost(const Leg& leg, double time_s, const Request& request) const;
   /// Lower bound of the cost of all routes between two places, at any time. Throws likewise.
   double bound(const Vec3& from, const Vec3& to, const Request& request) const;
+  /// What a route from the start costs, term by term: its cost is their sum, and searches for
+  /// compromises (Pareto) minimise each. Throws likewise.
+  std::vector<double> costs(const Route& route, const Request& request) const;
+  /// Lower bound of the cost of all routes between the request's ends, which are points. Throws
+  /// likewise.
+  double min_cost(const Request& request) const;
   /// What it costs to join the legs of a route (stops at corners). Throws likewise.
   double joining(const Route& route, const Request& request) const;
-  /// Cost of a whole route from the start, for limits and metrics: those of its legs, and of
-  /// joining them.
+  /// What limits and metrics count of a whole route: its costs, and joining its legs.
   double total(const Route& route, const Request& request) const;
   /// Unit of costs ("m"), for people; "" without one.
   std::string unit() const { return do_unit(); }
@@ -45,6 +56,10 @@ class ALTIPLAN_API Objective {
  private:
   virtual double do_cost(const Leg& leg, double time_s, const Request& request) const = 0;
   virtual double do_bound(const Vec3& from, const Vec3& to, const Request& request) const = 0;
+  /// Default: one term, the sum over the legs, each at its time.
+  virtual std::vector<double> do_costs(const Route& route, const Request& request) const;
+  /// Default: bound.
+  virtual double do_min_cost(const Request& request) const;
   virtual std::string do_unit() const = 0;
   /// What a route costs beyond the sum of its legs' costs, at least 0. Default: 0.
   virtual double do_joining(const Route& route, const Request& request) const;
@@ -56,7 +71,7 @@ class ALTIPLAN_API Objective {
 
 /// Cost of a leg that begins at the start's time.
 ALTIPLAN_API double cost_of(const Leg& leg, const Request& request);
-/// Cost of a route from the start: the sum over its legs, each at its time.
+/// Cost of a route from the start: the sum of its terms.
 ALTIPLAN_API double cost_of(const Route& route, const Request& request);
 /// Lower bound of the cost of all routes that begin and end as the request asks; 0 where its ends
 /// are not points (a tolerance or a loiter circle) and no bound is known.

@@ -54,5 +54,6 @@ struct Traits {
   bool avoids_obstacles = true;  ///< no leg through a known one; a local planner without it may
                                  ///< cross one, and the judge reports that
   bool objectives = false;       ///< minimises any objective that does not depend on the time
+  bool whole_routes = false;     ///< minimises any objective, also of the time and of waypoints
 };
 }  // namespace altiplan

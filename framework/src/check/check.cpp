@@ -149,6 +149,13 @@ CheckResult check(const Route& route, const Request& request) {
     }
     before = onward(before, leg);
   }
+  if (request.objective && request.objective->traits().waypoints &&
+      !std::isfinite(cost_of(route, request)) &&
+      std::none_of(found.begin(), found.end(),
+                   [](const Violation& v) { return v.constraint == "objective"; })) {
+    found.push_back({"objective", 0, kInfinity, kInfinity,
+                     "the objective has no cost for the route as a whole"});
+  }
   if (const auto course = request.arrival_course(route.back()); course && before) {
     const Vec3 arrival = before->heading_at(route.back());
     // On a border of layers of wind, that of the last leg may be the one below.

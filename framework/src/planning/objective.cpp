@@ -2,6 +2,7 @@
 #include "altiplan/objective.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "altiplan/attributed.hpp"
 #include "altiplan/measures.hpp"
@@ -19,18 +20,6 @@ double at_least_zero(double value, const char* what) {
 }
 
 std::string objective_text() { return "the objective"; }
-
-double sum_of(const Objective& objective, const Route& route, const Request& request) {
-  const bool in_time = objective.traits().time;
-  double cost = 0;
-  double time_s = 0;
-  for (std::size_t i = 0; i < route.leg_count(); ++i) {
-    const Leg leg = route.leg(i);
-    cost += objective.cost(leg, time_s, request);
-    time_s += in_time ? leg_duration(leg, request) : 0;
-  }
-  return cost;
-}
 }  // namespace
 
 Objective::~Objective() = default;
@@ -46,6 +35,35 @@ double Objective::bound(const Vec3& from, const Vec3& to, const Request& request
                        "the bound between two places");
 }
 
+std::vector<double> Objective::costs(const Route& route, const Request& request) const {
+  std::vector<double> terms = attributed(objective_text, [&] { return do_costs(route, request); });
+  for (const double term : terms) {
+    at_least_zero(term, "the cost of a route");
+  }
+  return terms;
+}
+
+std::vector<double> Objective::do_costs(const Route& route, const Request& request) const {
+  const bool in_time = traits().time;
+  double sum = 0;
+  double time_s = 0;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    sum += cost(leg, time_s, request);
+    time_s += in_time ? leg_duration(leg, request) : 0;
+  }
+  return {sum};
+}
+
+double Objective::min_cost(const Request& request) const {
+  return at_least_zero(attributed(objective_text, [&] { return do_min_cost(request); }),
+                       "the bound of routes");
+}
+
+double Objective::do_min_cost(const Request& request) const {
+  return bound(request.start.position, request.goal.position, request);
+}
+
 double Objective::do_joining(const Route&, const Request&) const { return 0; }
 
 double Objective::joining(const Route& route, const Request& request) const {
@@ -54,7 +72,8 @@ double Objective::joining(const Route& route, const Request& request) const {
 }
 
 double Objective::total(const Route& route, const Request& request) const {
-  return sum_of(*this, route, request) + joining(route, request);
+  const std::vector<double> terms = costs(route, request);
+  return std::accumulate(terms.begin(), terms.end(), 0.0) + joining(route, request);
 }
 
 double cost_of(const Leg& leg, const Request& request) {
@@ -62,7 +81,11 @@ double cost_of(const Leg& leg, const Request& request) {
 }
 
 double cost_of(const Route& route, const Request& request) {
-  return request.objective ? sum_of(*request.objective, route, request) : length(route);
+  if (!request.objective) {
+    return length(route);
+  }
+  const std::vector<double> terms = request.objective->costs(route, request);
+  return std::accumulate(terms.begin(), terms.end(), 0.0);
 }
 
 double min_cost(const Request& request) {
@@ -70,7 +93,7 @@ double min_cost(const Request& request) {
   const Goal& goal = request.goal;
   if (request.objective) {
     const bool are_points = !start.loiter && !goal.loiter && goal.tolerance_m == 0;
-    return are_points ? request.objective->bound(start.position, goal.position, request) : 0;
+    return are_points ? request.objective->min_cost(request) : 0;
   }
   const double radii =
       (start.loiter ? start.loiter->radius : 0) + (goal.loiter ? goal.loiter->radius : 0);

@@ -87,11 +87,18 @@ class FreshSession final : public Session {
 }  // namespace
 
 std::string objective_problem(const Objective& objective, const Traits& traits) {
+  if (traits.whole_routes) {
+    return "";
+  }
   if (!traits.objectives) {
     return "minimises length alone, not an objective: use one with the trait `objectives`, such as "
            "astar";
   }
-  return objective.traits().time ? "minimises no objective that depends on the time" : "";
+  const Objective::Traits its = objective.traits();
+  return its.waypoints ? "minimises costs of legs, added up, not one of the whole route's "
+                         "waypoints: use one with the trait `whole_routes`, such as pso"
+         : its.time    ? "minimises no objective that depends on the time"
+                       : "";
 }
 
 std::optional<PlanResult> impossible_ends(const Request& request) {

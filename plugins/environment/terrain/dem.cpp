@@ -142,6 +142,17 @@ void* read_band(const Params& params, void* dataset) {
 }
 
 void read_crs(const Params& params, void* dataset, Dem& dem) {
+  if (params.crs == "local") {
+    if (OGRSpatialReferenceH own = api().GDALGetSpatialRef(dataset)) {
+      refuse(params,
+             std::string("has its own coordinate system (") + api().OSRGetName(own) +
+                 "), but crs is local",
+             "crs");
+    }
+    dem.local = true;
+    dem.crs_name = "the world's metres";
+    return;
+  }
   gdal::Reference asked = params.crs.empty() ? nullptr : gdal::reference(params.crs);
   if (!params.crs.empty() && !asked) {
     const std::string said = gdal::last_error();
@@ -300,7 +311,9 @@ Dem read_dem(const Params& params, bool may_read_a_part) try {
   }
   dem.band = read_band(params, dataset);
   read_crs(params, dataset, dem);
-  read_datum(params, dem);
+  if (!dem.local) {
+    read_datum(params, dem);
+  }
   dem.from_north = read_position(params, dataset, dem);
   read_meaning(params, dem);
   return dem;

@@ -36,7 +36,11 @@ struct Params {
             "or use the mean of their neighbours, inward from the void's border (neighbours)");
     f("fill_m", fill_m).unit("m").range(-1000, 10000).doc("height of voids, with voids: fill_m");
     f("nodata", nodata).doc("the number that marks a void, if the file does not declare it");
-    f("crs", crs).doc("coordinate system (EPSG:4326) of a file that has none");
+    f("crs", crs)
+        .doc(
+            "coordinate system (EPSG:4326) of a file that has none; local: its numbers are the "
+            "world's "
+            "metres");
     f("band", band).at_least(1).doc("band with the heights, for a file that has several");
     f("max_posts", max_posts)
         .at_least(4)
@@ -69,6 +73,7 @@ struct Dem {
   std::string datum;             ///< of the heights: "EGM96 height", "" if the file names none
   bool above_ellipsoid = false;  ///< in the file: read_posts brings heights to sea level
   bool geographic = false;       ///< degrees; otherwise lengths of `unit_m`
+  bool local = false;            ///< the world's metres, without a coordinate system
   double unit_m = 1;
 
   std::vector<float> numbers;     ///< of the whole file in its order, if they are read already

@@ -478,6 +478,9 @@ Layout in_best_frame(const Dem& dem, const altiplan::Site& site, const Params& p
 }  // namespace
 
 Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& params) {
+  if (dem.local) {
+    return {site.frame, dem.south_west, dem.step, dem.columns, dem.rows, false, {}};
+  }
   if (site.frame.has_position()) {
     return in_frame(dem, site.frame, params, site.about);
   }

@@ -184,7 +184,20 @@ TEST_F(MadeFiles, DamagedAndForeignFilesAreRefused) {
   EXPECT_SAYS(refusal(grid(kFlat), "band: 2"), "no band 2");
   EXPECT_SAYS(refusal(grid(kFlat), "crs: 'EPSG:32633'"), "its own coordinate system");
   EXPECT_SAYS(refusal(grid(kFlat), "crs: UTM32"), "expected EPSG:");
+  EXPECT_SAYS(refusal(grid(kFlat), "crs: local"), "its own coordinate system");
   EXPECT_EQ(refusal(grid(kFlat)), "");
+}
+
+TEST_F(MadeFiles, WithoutACoordinateSystemItsNumbersAreTheWorlds) {
+  const auto file = write("local.asc",
+                          "ncols 3\nnrows 2\nxllcorner 0.5\nyllcorner 4.5\ncellsize 1\n"
+                          "1 2 3\n4 5 6\n");
+  EXPECT_SAYS(refusal(file, ""), "names no coordinate system");
+  const Made layer = make_environment("terrain", file_yaml(file, "crs: local"));
+  EXPECT_EQ(layer->ground()->height(1, 5), 4);
+  EXPECT_EQ(layer->ground()->height(3, 6), 3);
+  EXPECT_EQ(layer->ground()->height(0.99, 5), std::nullopt);
+  EXPECT_FALSE(layer->info().frame && layer->info().frame->has_position());
 }
 
 TEST_F(MadeFiles, TruncatedTiffIsRefused) {

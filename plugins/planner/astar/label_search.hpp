@@ -19,13 +19,15 @@ struct Resource {
   double maximum = kInfinity;
 };
 
-/// Those of the request that a search can keep: limits on totals that do not depend on the time,
-/// and on the length of a route that is planned for another objective.
+/// Those of the request that a search can keep: limits on totals that do not depend on the
+/// time or on waypoints, and on the length of a route that is planned for another objective.
 inline std::vector<Resource> resources_of(const Request& request) {
   std::vector<Resource> all;
   for (const NamedConstraint& named : request.constraints) {
     const auto* total = dynamic_cast<const TotalLimit*>(named.constraint.get());
-    if (total != nullptr && !total->of().traits().time) {
+    const bool adds_up = total != nullptr && !total->of().traits().time &&
+                         !total->of().traits().waypoints;  // over legs
+    if (adds_up) {
       all.push_back({&total->of(), total->maximum()});
     }
   }
