@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # altiplan_add_plugin(KIND NAME): the library altiplan_KIND_NAME from the *.cpp files beside the
 # calling CMakeLists.txt, and its test from the *_test.cpp files there where tests are built.
-# KIND: environment, constraint, planner, local_planner, smoother, tuner or objective.
+# KIND: environment, constraint, planner, local_planner, smoother, tuner, objective or task.
 
 set(ALTIPLAN_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/plugin_exports.map)
 set(ALTIPLAN_PLUGIN_CHECKSUM ${CMAKE_CURRENT_LIST_DIR}/plugin_checksum.cpp)
@@ -28,7 +28,7 @@ function(altiplan_add_checksum target)
 endfunction()
 
 function(altiplan_add_plugin kind name)
-  set(kinds environment constraint planner local_planner smoother tuner objective)
+  set(kinds environment constraint planner local_planner smoother tuner objective task)
   if(NOT kind IN_LIST kinds)
     message(FATAL_ERROR "altiplan_add_plugin: expected one of ${kinds}, found '${kind}'")
   endif()

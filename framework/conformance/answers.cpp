@@ -6,6 +6,7 @@
 #include "pilot_bench.hpp"
 #include "planner_bench.hpp"
 #include "probe.hpp"
+#include "task_bench.hpp"
 
 namespace altiplan::conformance {
 namespace {
@@ -165,6 +166,10 @@ std::string answers_of(const PluginEntry& entry, const Setup& setup) {
                  [&](const Factory<Tuner>& make) { return of_tuner(make, options); },
                  [&](const ObjectiveFactory& make) {
                    const ObjectiveBench bench(make, options, setup.before);
+                   return bench.answers(*bench.made());
+                 },
+                 [&](const TaskFactory& make) {
+                   const TaskBench bench(make, options, setup.before);
                    return bench.answers(*bench.made());
                  }});
 }

@@ -25,6 +25,7 @@ Cases cases_of(const PluginEntry& entry, const Setup& setup) {
           [&](const Factory<Tuner>& make) { return tuner_cases(make, options); },
           [&](const ObjectiveFactory& make) {
             return objective_cases(make, options, setup.before);
-          }});
+          },
+          [&](const TaskFactory& make) { return task_cases(make, options, setup.before); }});
 }
 }  // namespace altiplan::conformance

@@ -42,6 +42,10 @@ auto with_factory(const PluginEntry& entry, const Value* parameters, const Visit
     return visit(ObjectiveFactory(
         [entry, with](const Site& site) { return entry.objective(with.get(), site); }));
   }
+  if (entry.task != nullptr) {
+    return visit(
+        TaskFactory([entry, with](const Site& site) { return entry.task(with.get(), site); }));
+  }
   return Result();
 }
 

@@ -122,7 +122,8 @@ void whole_entry(const PluginEntry& entry, Report& report) {
       {"local_planner", entry.local_planner != nullptr},
       {"smoother", entry.smoother != nullptr},
       {"tuner", entry.tuner != nullptr},
-      {"objective", entry.objective != nullptr}};
+      {"objective", entry.objective != nullptr},
+      {"task", entry.task != nullptr}};
   for (const auto& [of, set] : makers) {
     report.expect(set == (of == kind), kEntry, [&, of = of, set = set] {
       return "of kind '" + kind + "', the factory of " + of + (set ? " is set" : " is not set");
@@ -215,7 +216,8 @@ void makes(const PluginEntry& entry, Report& report) {
            (entry.local_planner != nullptr && entry.local_planner(parameters) != nullptr) ||
            (entry.smoother != nullptr && entry.smoother(parameters) != nullptr) ||
            (entry.tuner != nullptr && entry.tuner(parameters) != nullptr) ||
-           (entry.objective != nullptr && entry.objective(parameters, site) != nullptr);
+           (entry.objective != nullptr && entry.objective(parameters, site) != nullptr) ||
+           (entry.task != nullptr && entry.task(parameters, site) != nullptr);
   };
   const Value wrong = map_of("no_such_key", scalar("1"));
   try {

@@ -83,6 +83,8 @@ constexpr PluginEntry careless_entry(const char* name, const char* sentence) {
     entry.smoother = make;
   } else if constexpr (std::is_same_v<Interface, Objective>) {
     entry.objective = make;
+  } else if constexpr (std::is_same_v<Interface, Task>) {
+    entry.task = make;
   } else {
     entry.tuner = make;
   }

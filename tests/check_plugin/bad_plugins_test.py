@@ -121,7 +121,7 @@ def found():
         for plugin, test in listed:
             tests.setdefault((plugin.split("/")[0], test), None)
     kinds = ["library", "planner", "local_planner", "smoother", "constraint", "environment", "tuner",
-             "objective"]
+             "objective", "task"]
     bad.sort(key=lambda one: (kinds.index(one.key.split("/")[0]),
                               "nothing is wrong" not in one.does, one.key))
     return bad, list(tests)

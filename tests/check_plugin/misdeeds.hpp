@@ -27,6 +27,7 @@
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/smoother.hpp"
+#include "altiplan/task.hpp"
 #include "altiplan/tuner.hpp"
 
 /// What code may do to its process, whatever it is there for; each a function that a plugin broken

@@ -15,7 +15,7 @@ import tempfile
 import walk
 
 BUILD = pathlib.Path(sys.argv[1])
-KINDS = ["constraint", "environment", "local_planner", "objective", "planner", "smoother", "tuner"]
+KINDS = ["constraint", "environment", "local_planner", "objective", "planner", "smoother", "task", "tuner"]
 WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror"
 
 

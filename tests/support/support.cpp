@@ -121,6 +121,14 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
   return entry("environment", name).environment(&value, site);
 }
 
+std::unique_ptr<Task> make_task(std::string_view name, std::string_view yaml) {
+  static const World kEmpty;
+  Site site;
+  site.before = &kEmpty;
+  const Value value = parameters(yaml);
+  return entry("task", name).task(&value, site);
+}
+
 std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
                                           const Frame& frame) {
   return make_objective(name, yaml, World().with_frame(frame));

@@ -26,7 +26,7 @@ struct NewArguments {
 };
 
 constexpr std::string_view kKinds[] = {"constraint", "environment", "local_planner", "objective",
-                                       "planner",    "smoother",    "tuner"};
+                                       "planner",    "smoother",    "task",          "tuner"};
 constexpr std::string_view kKindsInPython[] = {"constraint", "environment", "objective", "planner",
                                                "smoother"};
 
@@ -217,7 +217,8 @@ void add_new(App& app, Action& action) {
   command
       .add_option(
           "kind", arguments.kind,
-          "kind: constraint, environment, local_planner, objective, planner, smoother or tuner")
+          "kind: constraint, environment, local_planner, objective, planner, smoother, task or "
+          "tuner")
       ->required();
   command.add_option("name", arguments.name, "name of the plugin and of its folder, in snake_case")
       ->required();

@@ -4,7 +4,7 @@ import json
 import re
 import subprocess
 
-KINDS = ["environment", "constraint", "planner", "local_planner", "smoother", "objective", "tuner"]
+KINDS = ["environment", "constraint", "planner", "local_planner", "smoother", "objective", "task", "tuner"]
 TRAITS = {
     "complete": "finds a route of its search space whenever there is one",
     "optimal": "and the shortest of them",

@@ -79,6 +79,10 @@ void add_scenario(std::vector<Explained>& all, const Config& config) {
     add_plugin(all, config, "environment", layer.plugin, layer.parameters,
                path + "." + layer.plugin);
   }
+  if (scenario.task) {
+    add_plugin(all, config, "task", scenario.task->plugin, scenario.task->parameters,
+               "scenario.task." + scenario.task->plugin);
+  }
   for (std::size_t i = 0; i < scenario.via.size(); ++i) {
     add_entry(all, scenario.via[i], tree("via", i), item("scenario.via", i));
   }

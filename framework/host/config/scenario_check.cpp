@@ -128,8 +128,12 @@ void check_points(Checker& checker, const ScenarioFile& scenario, const Value& t
                       "above_ground_m, or level_flight_at_m for all points");
     }
   };
-  check(scenario.start.point, place_of(tree, "start"), "start");
-  check(scenario.goal.point, place_of(tree, "goal"), "goal");
+  if (!scenario.task || tree.find("start") != nullptr) {
+    check(scenario.start.point, place_of(tree, "start"), "start");
+  }
+  if (!scenario.task || tree.find("goal") != nullptr) {
+    check(scenario.goal.point, place_of(tree, "goal"), "goal");
+  }
   for (std::size_t i = 0; i < scenario.via.size(); ++i) {
     check(scenario.via[i].point, tree.find("via")->items[i].where, item("via", i));
   }
@@ -183,6 +187,11 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
   check_constraints(checker, scenario.constraints, tree);
   if (scenario.objective) {
     check_objective(checker, *scenario.objective, *tree.find("objective"), "objective");
+  }
+  if (scenario.task) {
+    const TaskEntry& task = *scenario.task;
+    checker.check_plugin("task", task.plugin, task.parameters,
+                         place_of(*tree.find("task"), task.plugin), "task." + task.plugin, "task");
   }
   check_body(checker, scenario, tree);
   if (scenario.start_time && !formats::parse_iso_time(*scenario.start_time)) {

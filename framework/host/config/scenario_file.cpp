@@ -27,6 +27,10 @@ void MetricEntry::describe(Fields& f) {
       .required();
 }
 
+void TaskEntry::describe(Fields& f) {
+  f.plugin("task", plugin, parameters).doc("an area, a line or places").required();
+}
+
 void PointEntry::describe(Fields& f) { f.point(point).required(); }
 
 namespace {
@@ -486,9 +490,15 @@ void ScenarioFile::describe(Fields& f) {
           "a ground station's file (.plan, .waypoints, .kml, .gpx): its first point is the start, "
           "its last the goal and the others via points, unless they are given here");
   f("wind", wind).doc("horizontal wind");
-  f("start", start).required().doc("start of the route");
+  f("task", task).doc("passes and stops that the route makes between start and goal");
+  FieldRef first = f("start", start).doc("start of the route; with a task optional");
   f("via", via).doc("points to pass, in order");
-  f("goal", goal).required().doc("end of the route");
+  FieldRef last = f("goal", goal).doc("end of the route; with a task optional");
+  if (!task) {
+    first.required();
+    last.required();
+  }
+  f.check(!task || via.empty(), "a task orders what is passed: expected task or via, not both");
   f("moving", moving).doc("moving obstacles");
   const bool avoids = std::any_of(moving.begin(), moving.end(), [](const MovingEntry& obstacle) {
     return obstacle.known.value_or(false);

@@ -41,6 +41,13 @@ struct MetricEntry {
   void describe(Fields& f);
 };
 
+/// `task: {cover: {…}}`: what is to be done besides reaching the goal.
+struct TaskEntry {
+  std::string plugin;
+  Value parameters;
+  void describe(Fields& f);
+};
+
 struct PointEntry {
   Point point;
   void describe(Fields& f);
@@ -320,6 +327,7 @@ struct ScenarioFile {
   StartEntry start;
   std::vector<GoalEntry> via;
   GoalEntry goal;
+  std::optional<TaskEntry> task;
   std::vector<MovingEntry> moving;
   std::vector<EventEntry> events;
   std::vector<ConstraintEntry> constraints;

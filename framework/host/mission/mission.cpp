@@ -182,9 +182,21 @@ Layer build_layer(const Config& config, const std::string& plugin_name, const Va
 }
 
 namespace {
+/// True if the scenario has the end of the route: with a task it need not.
+bool is_given(const Config& config, std::string_view end) {
+  return !config.scenario.task || config.scenario_tree.find(end) != nullptr;
+}
+
 /// Start, via points and goal; none if one of them depends on a layer that is not built yet.
-std::vector<Vec3> maybe_points(const ScenarioFile& file, const Site& site) {
-  std::vector<const Point*> all{&file.start.point, &file.goal.point};
+std::vector<Vec3> maybe_points(const Config& config, const Site& site) {
+  const ScenarioFile& file = config.scenario;
+  std::vector<const Point*> all;
+  if (is_given(config, "start")) {
+    all.push_back(&file.start.point);
+  }
+  if (is_given(config, "goal")) {
+    all.push_back(&file.goal.point);
+  }
   for (const GoalEntry& via : file.via) {
     all.push_back(&via.point);
   }
@@ -208,9 +220,13 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     const LayerEntry& entry = file.environment[i];
     site.frame = truth.frame();
     site.before = &truth;
-    site.start = maybe_point(file.start.point, site, level);
-    site.goal = maybe_point(file.goal.point, site, level);
-    site.volume = asked_volume(file, maybe_points(file, site));
+    if (is_given(config, "start")) {
+      site.start = maybe_point(file.start.point, site, level);
+    }
+    if (is_given(config, "goal")) {
+      site.goal = maybe_point(file.goal.point, site, level);
+    }
+    site.volume = asked_volume(file, maybe_points(config, site));
     const std::string key = "environment." + std::to_string(i) + "." + entry.plugin;
     calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
     Layer layer =
@@ -303,8 +319,12 @@ void expect_within(const Config& config, const Mission& mission) {
       throw ConfigError(where, key, why);
     }
   };
-  expect(file.start.point, place_of(tree, "start"), "start");
-  expect(file.goal.point, place_of(tree, "goal"), "goal");
+  if (is_given(config, "start")) {
+    expect(file.start.point, place_of(tree, "start"), "start");
+  }
+  if (is_given(config, "goal")) {
+    expect(file.goal.point, place_of(tree, "goal"), "goal");
+  }
   for (std::size_t i = 0; i < file.via.size(); ++i) {
     expect(file.via[i].point, tree.find("via")->items[i].where, item("via", i));
   }
@@ -319,20 +339,62 @@ void place_points(const Config& config, Mission& mission) {
   const auto placed = [&](const Point& point, const Location& where, const std::string& key) {
     return resolve_point(point, site, file.level_flight_at_m, where, key);
   };
-  request.start.position = placed(file.start.point, place_of(tree, "start"), "start");
-  request.goal = {placed(file.goal.point, place_of(tree, "goal"), "goal"), file.goal.tolerance_m,
-                  heading_of(file.goal.heading_deg), loiter_of(file.goal.loiter)};
+  if (is_given(config, "start")) {
+    request.start.position = placed(file.start.point, place_of(tree, "start"), "start");
+    mission.ends.start = request.start.position;
+  }
+  if (is_given(config, "goal")) {
+    request.goal = {placed(file.goal.point, place_of(tree, "goal"), "goal"), file.goal.tolerance_m,
+                    heading_of(file.goal.heading_deg), loiter_of(file.goal.loiter)};
+    mission.ends.goal = request.goal.position;
+  }
   request.start.loiter = loiter_of(file.start.loiter);
   if (const auto heading = heading_of(file.start.heading_deg)) {
     request.start.velocity = request.ground_velocity({request.start.position, *heading});
   }
-  site.start = request.start.position;
-  site.goal = request.goal.position;
+  site.start = mission.ends.start;
+  site.goal = mission.ends.goal;
   for (std::size_t i = 0; i < file.via.size(); ++i) {
     mission.via.push_back(
         {placed(file.via[i].point, tree.find("via")->items[i].where, "via." + std::to_string(i)),
          file.via[i].tolerance_m, heading_of(file.via[i].heading_deg),
          loiter_of(file.via[i].loiter)});
+  }
+}
+}  // namespace
+
+namespace {
+/// Builds the task in the world of all layers, and adds what it keeps out of as one more.
+void add_task(const Config& config, Mission& mission, const Calling& calling) {
+  const TaskEntry& entry = *config.scenario.task;
+  const std::string who = "the task '" + entry.plugin + "'";
+  calling(who + ": its constructor");
+  Site site = mission.site;
+  site.before = &mission.truth;
+  site.random = RandomStream(std::uint64_t(config.seed)).sub("task");
+  if (const auto level = config.scenario.level_flight_at_m) {
+    site.volume.min.z() = site.volume.max.z() = *level;
+  }
+  try {
+    mission.task = plugin(*config.registry, "task", entry.plugin).task(&entry.parameters, site);
+    if (mission.task == nullptr) {
+      throw PluginError("made no object");
+    }
+    if (auto obstacles = mission.task->obstacles()) {
+      const bool is_taken = mission.truth.find(entry.plugin) != nullptr;
+      Layer layer{entry.plugin + (is_taken ? "_task" : ""), entry.plugin, std::move(obstacles)};
+      expect_sound(layer);
+      mission.truth = std::move(mission.truth).with(std::move(layer));
+    }
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const PluginError& error) {
+    throw PluginError(who + " " + error.what(), error.reason());
+  } catch (const ParameterError& error) {
+    throw ConfigError(place_of(entry.parameters, error.key()),
+                      "task." + entry.plugin + "." + error.key(), error.what());
+  } catch (const Error& error) {
+    throw ConfigError(entry.parameters.where, "task." + entry.plugin, error.what());
   }
 }
 }  // namespace
@@ -370,7 +432,10 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   request.vehicle = site.vehicle;
   request.wind = wind_of(file.wind);
   place_points(config, mission);
-  site.volume = volume_of(config, mission, maybe_points(file, site), on_note);
+  if (file.task) {
+    add_task(config, mission, calling);
+  }
+  site.volume = volume_of(config, mission, maybe_points(config, site), on_note);
   if (!config.is_only_judged) {
     expect_within(config, mission);
   }

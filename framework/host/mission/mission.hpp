@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/request.hpp"
+#include "altiplan/task.hpp"
 #include "host/config/config.hpp"
 #include "host/mission/objective.hpp"
 
@@ -21,6 +22,10 @@ struct Mission {
   /// The same with those that apply to tracks.
   Request track_request;
   std::vector<Goal> via;
+  /// What is to be done; until its passes are ordered, start and goal are where the scenario gives
+  /// them, or nowhere in particular. Null: nothing.
+  std::shared_ptr<const Task> task;
+  TaskEnds ends;  ///< of the task, as far as the scenario gives them
   std::vector<Metric> metrics;  ///< by which routes and tracks are measured
   VehicleType vehicle_type = VehicleType::copter;
   std::vector<std::string> notes;     ///< notes of the layers

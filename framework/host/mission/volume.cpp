@@ -90,7 +90,19 @@ Box asked_volume(const ScenarioFile& file, const std::vector<Vec3>& points) {
 Box volume_of(const Config& config, Mission& mission, const std::vector<Vec3>& points,
               const NoteSink& on_note) {
   const ScenarioFile& file = config.scenario;
-  const Box layers = mission.truth.bounds();
+  Box layers = mission.truth.bounds();
+  if (mission.task != nullptr) {
+    Box passed = mission.task->bounds();
+    for (const Vec3& p : points) {
+      passed = passed.with(p);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      layers.min[axis] = std::min(std::isfinite(layers.min[axis]) ? layers.min[axis] : kInfinity,
+                                  passed.min[axis]);
+      layers.max[axis] = std::max(std::isfinite(layers.max[axis]) ? layers.max[axis] : -kInfinity,
+                                  passed.max[axis]);
+    }
+  }
   Box box = asked_volume(file, points);
   for (int axis = 0; axis < 3; ++axis) {
     box.min[axis] = std::isfinite(box.min[axis]) ? box.min[axis] : layers.min[axis];

@@ -130,7 +130,8 @@ bool has_maker(const PluginEntry& entry) {
           (kind == "local_planner" && entry.local_planner != nullptr) ||
           (kind == "smoother" && entry.smoother != nullptr) ||
           (kind == "tuner" && entry.tuner != nullptr) ||
-          (kind == "objective" && entry.objective != nullptr));
+          (kind == "objective" && entry.objective != nullptr) ||
+          (kind == "task" && entry.task != nullptr));
 }
 
 /// Checks that the parameters have valid names: damaged data yields invalid ones.

@@ -18,6 +18,7 @@
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
 #include "altiplan/smoother.hpp"
+#include "altiplan/task.hpp"
 #include "altiplan/tuner.hpp"
 #include "host/base/plugin_file.hpp"
 #include "host/plugins/unbuilt.hpp"

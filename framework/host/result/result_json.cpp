@@ -181,6 +181,9 @@ Json plugins_json(const Config& config) {
   for_each_objective(config, [&](const std::string& name, const Value&, const std::string&) {
     use("objective", name);
   });
+  if (config.scenario.task) {
+    use("task", config.scenario.task->plugin);
+  }
   const auto use_step = [&](const StepEntry& step) {
     for (const char* kind : {"planner", "local_planner", "smoother"}) {
       use(kind, step.plugin);
@@ -311,6 +314,13 @@ Json result_json(const Config& config, const RunResult& result) {
   json["metrics"] = run_metrics(config, result);
   json["check"] = accepted ? to_json(*accepted->check) : Json(nullptr);
   json.update(to_json(accepted ? accepted->cost : std::nullopt));
+  if (result.task) {
+    json["task"] = {{"plugin", config.scenario.task->plugin},
+                    {"passes", result.task->passes},
+                    {"flights", result.task->flights},
+                    {"time_s", number(result.task->time_s)},
+                    {"bound_s", number(result.task->bound_s)}};
+  }
   json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);
   json["trace"] = result.trace ? Json(*result.trace) : Json(nullptr);
   return json;

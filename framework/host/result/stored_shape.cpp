@@ -43,6 +43,7 @@ constexpr Key kResult[] = {
     {"folder", kText},
     {"cost", kNumber | kNull},
     {"bound", kNumber | kNull},
+    {"task", kObject},
 };
 constexpr Key kFile[] = {{"path", kText}, {"sha256", kText}};
 constexpr Key kStep[] = {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/mission/mission.hpp"
+#include "host/run/along_task.hpp"
 #include "host/run/along_via.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/run/rollout.hpp"
@@ -80,6 +81,11 @@ class Run {
   const PlanPlugin& make_plan(const StepEntry& entry);
   /// A session from the request's start: the planner's own if it supports sessions.
   std::unique_ptr<Session> begin_session(const PlanPlugin& made, const Request& request);
+  /// Orders the scenario's task once; from then on the mission has its start, goal and via points.
+  /// Returns why there is no order, or nothing.
+  std::optional<PlanResult> order_task(const Request& request);
+  /// Plans sections: with a task those between its passes.
+  PlanPart part_of(const PlanPlugin& made) const;
   /// True if a flight continues the session of that plan step.
   bool flown_with(const std::string& id) const;
   void plan(const StepEntry& entry, StepResult& step);
@@ -141,6 +147,7 @@ class Run {
   const Config& config_;
   const RunOptions& options_;
   Mission mission_;
+  std::optional<TaskSections> task_;  ///< once it is ordered
   std::mutex mutex_;  ///< guards result_ and caller_ against the watchdog
   std::string caller_;
   RunResult result_;

@@ -87,7 +87,34 @@ std::unique_ptr<Session> Run::begin_session(const PlanPlugin& made, const Reques
   if (made.planner && mission_.via.empty()) {
     return made.planner->begin(request);
   }
-  return std::make_unique<FreshVia>(request, mission_.via, made.part());
+  return std::make_unique<FreshVia>(request, mission_.via, part_of(made));
+}
+
+PlanPart Run::part_of(const PlanPlugin& made) const {
+  return task_ ? task_->part(made.part()) : made.part();
+}
+
+std::optional<PlanResult> Run::order_task(const Request& request) {
+  TaskOrder order = mission_.task->order(request, mission_.ends);
+  if (order.status != PlanStatus::solved) {
+    PlanResult failed;
+    failed.status = order.status;
+    failed.reason = order.reason;
+    failed.message = "the task has no order: " + order.message;
+    failed.counters = std::move(order.counters);
+    failed.budget_hit = order.budget_hit;
+    return failed;
+  }
+  task_.emplace(std::move(order), mission_.ends);
+  for (Request* mission : {&mission_.request, &mission_.track_request}) {
+    mission->start.position = task_->start();
+    mission->goal.position = task_->goal();
+  }
+  mission_.via = task_->via(mission_.request);
+  const std::lock_guard lock(mutex_);
+  result_.task = OrderedTask{task_->order().passes.size(), task_->flights(mission_.request),
+                             task_->order().time_s, task_->order().bound_s};
+  return std::nullopt;
 }
 
 bool Run::flown_with(const std::string& id) const {
@@ -100,9 +127,21 @@ void Run::plan(const StepEntry& entry, StepResult& step) {
   const auto began = Clock::now();
   const PlanPlugin& made = make_plan(entry);
   step.setup_time_s = seconds_since(began);
-  guarded(entry, step, [&](const Request& request) {
+  guarded(entry, step, [&](const Request& given) {
+    Request request = given;
+    if (mission_.task && !task_) {
+      if (auto failed = order_task(request)) {
+        return *std::move(failed);
+      }
+    }
+    if (task_) {
+      request.start.position = task_->start();
+      request.goal.position = task_->goal();
+    }
     if (!flown_with(entry.id)) {
-      return plan_along(request, mission_.via, made.part());
+      PlanResult result = plan_along(request, mission_.via, part_of(made));
+      result.budget_hit = result.budget_hit || (task_ && task_->order().budget_hit);
+      return result;
     }
     sessions_[entry.id] = begin_session(made, request);
     return sessions_[entry.id]->result();

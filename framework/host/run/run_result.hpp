@@ -34,6 +34,14 @@ struct StepResult {
   std::optional<Cost> cost;  ///< of a route that is judged
 };
 
+/// A scenario's task as ordered.
+struct OrderedTask {
+  std::size_t passes = 0;
+  std::vector<double> flights;  ///< seconds of each
+  double time_s = 0;
+  double bound_s = 0;  ///< of all orders of the same passes
+};
+
 /// Result of a run; grows while it runs.
 struct RunResult {
   RunStatus status = RunStatus::failed;
@@ -42,6 +50,7 @@ struct RunResult {
   bool budget_hit = false;
   std::vector<StepResult> steps;
   std::optional<std::size_t> accepted;  ///< index of the step whose route is accepted
+  std::optional<OrderedTask> task;
   std::optional<FlightResult> flight;
   Frame frame;
   std::shared_ptr<const Objective> objective;  ///< null: length

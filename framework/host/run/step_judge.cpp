@@ -22,6 +22,11 @@ void Run::judge_step(StepResult& step, const Request& request) {
   try {
     if (step.status == RunStatus::solved) {  // first: the judge knows the cause
       step.check = judge(step.route, request, mission_.via);
+      if (task_) {
+        if (auto unflown = task_->violation(step.route)) {
+          step.check->violations.push_back(*std::move(unflown));
+        }
+      }
     }
     step.measures = measure(step.route, request);
     step.metrics = measured(step.route, request, mission_.metrics);

@@ -8,8 +8,8 @@
 ///
 ///     ALTIPLAN_PLUGIN(Planner, "astar", AStar, Params, "A* on a lattice …")
 ///
-/// the interface, the name in YAML, the class (constructible from its parameters; an environment
-/// and an objective from parameters and Site), the parameter struct (with `void
+/// the interface, the name in YAML, the class (constructible from its parameters; an environment,
+/// an objective and a task from parameters and Site), the parameter struct (with `void
 /// describe(altiplan::Fields&)`), and a sentence for `altiplan plugins`.
 
 extern "C" {

@@ -20,6 +20,7 @@ class LocalPlanner;
 class Smoother;
 class Tuner;
 class Objective;
+class Task;
 struct Site;
 
 /// Self-description of a library, read from its file before any of its code runs: plain data in the
@@ -124,6 +125,7 @@ struct PluginEntry {
   std::unique_ptr<Smoother> (*smoother)(const Value* parameters);
   std::unique_ptr<Tuner> (*tuner)(const Value* parameters);
   std::unique_ptr<Objective> (*objective)(const Value* parameters, const Site& site);
+  std::unique_ptr<Task> (*task)(const Value* parameters, const Site& site);
 };
 
 /// The only symbol that a plugin library exports.
@@ -176,6 +178,8 @@ template <>
 inline constexpr const char* kKind<Tuner> = "tuner";
 template <>
 inline constexpr const char* kKind<Objective> = "objective";
+template <>
+inline constexpr const char* kKind<Task> = "task";
 
 template <class Interface, class Class, class Params>
 constexpr PluginEntry make_entry(const char* name, const char* sentence) {
@@ -199,8 +203,10 @@ constexpr PluginEntry make_entry(const char* name, const char* sentence) {
     entry.smoother = &make<Interface, Class, Params>;
   } else if constexpr (std::is_same_v<Interface, Tuner>) {
     entry.tuner = &make<Interface, Class, Params>;
-  } else {
+  } else if constexpr (std::is_same_v<Interface, Objective>) {
     entry.objective = &make<Interface, Class, Params, Site>;
+  } else {
+    entry.task = &make<Interface, Class, Params, Site>;
   }
   return entry;
 }

@@ -65,6 +65,8 @@ PluginEntry stub_of(const Manifest& plugin) {
     entry.smoother = [](const Value*) { return std::unique_ptr<Smoother>(); };
   } else if (kind == "objective") {
     entry.objective = [](const Value*, const Site&) { return std::unique_ptr<Objective>(); };
+  } else if (kind == "task") {
+    entry.task = [](const Value*, const Site&) { return std::unique_ptr<Task>(); };
   } else {
     entry.tuner = [](const Value*) { return std::unique_ptr<Tuner>(); };
   }

@@ -15,6 +15,7 @@
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin_abi.hpp"
 #include "altiplan/smoother.hpp"
+#include "altiplan/task.hpp"
 #include "altiplan/tuner.hpp"
 
 /// The contract of every plugin of a kind as cases for any test framework: the numbered clauses of
@@ -58,6 +59,7 @@ template <class Interface>
 using Factory = std::function<std::unique_ptr<Interface>()>;
 using EnvironmentFactory = std::function<std::unique_ptr<Environment>(const Site&)>;
 using ObjectiveFactory = std::function<std::unique_ptr<Objective>(const Site&)>;
+using TaskFactory = std::function<std::unique_ptr<Task>(const Site&)>;
 
 // Each calls its factory more than once, and expects equal objects.
 Cases planner_cases(const Factory<Planner>& make, const Options& options = {});
@@ -72,6 +74,9 @@ Cases environment_cases(const EnvironmentFactory& make, const Options& options =
 /// Likewise in a world; null: of random solids.
 Cases objective_cases(const ObjectiveFactory& make, const Options& options = {},
                       const std::shared_ptr<const World>& before = nullptr);
+/// Likewise in a world; null: an empty one.
+Cases task_cases(const TaskFactory& make, const Options& options = {},
+                 const std::shared_ptr<const World>& before = nullptr);
 Cases tuner_cases(const Factory<Tuner>& make, const Options& options = {});
 
 /// The cases for plugins of any kind: their entry, and the declaration of their parameters.

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "altiplan/task.hpp"
+
+#include "altiplan/attributed.hpp"
+#include "altiplan/environment.hpp"
+
+namespace altiplan {
+namespace {
+
+[[noreturn]] void fail_contract(const std::string& what) {
+  throw PluginError("the task violated the contract of its interface: " + what, Reason::contract);
+}
+
+void expect_within(const Polyline& points, const Box& bounds, std::size_t pass) {
+  for (const Vec3& p : points) {
+    if (!p.allFinite() || !bounds.contains(p, kLengthTolerance)) {
+      fail_contract("a point of pass " + std::to_string(pass) + " is not within its bounds");
+    }
+  }
+}
+}  // namespace
+
+Task::~Task() = default;
+std::shared_ptr<const Environment> Task::do_obstacles() const { return nullptr; }
+
+TaskOrder Task::order(const Request& request, const TaskEnds& ends) const {
+  TaskOrder order =
+      attributed([] { return std::string("the task"); }, [&] { return do_order(request, ends); });
+  if ((order.status == PlanStatus::solved) == order.passes.empty()) {
+    fail_contract(order.passes.empty() ? "it is solved without a pass"
+                                       : "it has passes and is not solved");
+  }
+  const Box box = bounds();
+  for (std::size_t i = 0; i < order.passes.size(); ++i) {
+    if (order.passes[i].points.empty()) {
+      fail_contract("pass " + std::to_string(i) + " has no point");
+    }
+    expect_within(order.passes[i].points, box, i);
+  }
+  if (!(order.bound_s >= 0 && order.time_s >= order.bound_s * (1 - 1e-9))) {
+    fail_contract("its time is " + std::to_string(order.time_s) + " s, its bound " +
+                  std::to_string(order.bound_s) + " s");
+  }
+  return order;
+}
+}  // namespace altiplan

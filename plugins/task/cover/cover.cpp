@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "altiplan/error.hpp"
+#include "altiplan/flown_route.hpp"
+#include "altiplan/formats/polygon.hpp"
+#include "altiplan/kit/layers/obstacle_set.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/request.hpp"
+#include "altiplan/task.hpp"
+#include "flights.hpp"
+
+namespace altiplan::cover {
+namespace {
+
+struct Params {
+  formats::Ring outline_m{{0, 0}, {100, 0}, {100, 100}, {0, 100}};
+  std::vector<formats::Ring> holes_m;
+  double spacing_m = 3;
+  bool closed = true;
+  std::optional<double> capacity_s;
+  double height_m = 0;
+  int attempts = 3;
+
+  void describe(Fields& f) {
+    f("outline_m", outline_m).unit("m").min_items(3).doc("corners [x, y], in either sense");
+    f("holes_m", holes_m).unit("m").doc("islands, which are neither covered nor crossed");
+    f("spacing_m", spacing_m)
+        .unit("m")
+        .greater_than(0)
+        .doc("distance of lines: each covers half of it to both sides, and around its ends");
+    f("closed", closed).doc("true: without a goal the tour ends where it began");
+    f("capacity_s", capacity_s)
+        .unit("s")
+        .greater_than(0)
+        .doc("longest flight of a closed tour: several begin and end at one place; default: any");
+    f.check(closed || !capacity_s, "capacity_s is for a closed tour");
+    f("height_m", height_m)
+        .unit("m")
+        .doc("height of the passes above sea level; with level_flight_at_m that");
+    f("attempts", attempts).range(1, 1000).doc("patterns of lines that are tried");
+  }
+};
+
+/// Share of the area that may stay uncovered, as slivers beside slanted edges.
+constexpr double kUncovered = 9e-5;
+
+Ring2 points_of(const formats::Ring& ring) {
+  Ring2 points;
+  for (const formats::Point2& p : formats::without_repeats(ring)) {
+    points.emplace_back(p[0], p[1]);
+  }
+  return points;
+}
+
+class Cover final : public Task {
+ public:
+  Cover(const Params& params, const Site& site)
+      : params_(params), area_(area_of(params)), height_m_(params.height_m) {
+    const double level = site.volume.min.z();
+    if (std::isfinite(level) && level == site.volume.max.z()) {
+      height_m_ = level;
+    }
+  }
+
+ private:
+  static Area area_of(const Params& params) {
+    const std::string problem =
+        formats::polygon_problem({params.outline_m, params.holes_m});
+    if (!problem.empty()) {
+      throw ParameterError("outline_m", "the area " + problem);
+    }
+    std::vector<Ring2> islands;
+    for (const formats::Ring& hole : params.holes_m) {
+      islands.push_back(points_of(hole));
+    }
+    return {points_of(params.outline_m), std::move(islands)};
+  }
+
+  Box do_bounds() const override {
+    return {{area_.min().x(), area_.min().y(), height_m_},
+            {area_.max().x(), area_.max().y(), height_m_}};
+  }
+
+  std::shared_ptr<const Environment> do_obstacles() const override {
+    if (params_.holes_m.empty()) {
+      return nullptr;
+    }
+    std::vector<Shape> islands;
+    for (const formats::Ring& hole : params_.holes_m) {
+      Prism island;
+      island.outline = hole;
+      islands.emplace_back(std::move(island));
+    }
+    return std::make_shared<kit::ShapeLayer>(std::move(islands));
+  }
+
+  TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
+    TaskOrder order;
+    const auto flat = [](const Vec3& p) { return Point2(p.x(), p.y()); };
+    const Vehicle& vehicle = request.vehicle;
+    const bool stops = !vehicle.wing && !vehicle.acceleration.corner_radius_m;
+    Problem problem{area_,
+                    params_.spacing_m,
+                    {request.air_speed(), stops ? vehicle.acceleration.mps2 : kInfinity},
+                    params_.closed && !(ends.goal && !ends.start),
+                    {},
+                    {},
+                    kUncovered};
+    if (ends.start) {
+      problem.start = flat(*ends.start);
+    }
+    if (ends.goal) {
+      problem.goal = flat(*ends.goal);
+      problem.closed = false;
+    }
+    BudgetWatch watch(request.budget);
+    RandomStream random = request.random;
+    const Sweep found = sweep(problem, params_.attempts, random(),
+                              [&](std::uint64_t iterations) { return watch.spent(iterations); });
+    order.counters = {{"expanded", std::int64_t(found.iterations)}};
+    order.budget_hit = !found.is_complete;
+    if (found.flown.points.empty()) {
+      order.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
+      order.message = "the budget ended before the first tour";
+      return order;
+    }
+    fill(order, problem, found, request, ends);
+    return order;
+  }
+
+  /// The tour as one flight, from a pass on if it may begin anywhere.
+  Flight whole(const Sweep& found, const TaskEnds& ends) const {
+    Flight flight{found.flown.points, found.needed};
+    if (params_.closed && !ends.start && !ends.goal) {
+      const auto first =
+          std::find(flight.needed.begin(), flight.needed.end(), char(1)) - flight.needed.begin();
+      flight.points.pop_back();
+      std::rotate(flight.points.begin(), flight.points.begin() + first, flight.points.end());
+      std::rotate(flight.needed.begin(), flight.needed.begin() + first, flight.needed.end());
+      flight.points.push_back(flight.points.front());
+    }
+    return flight;
+  }
+
+  /// Adds a flight's passes, the legs that cover what no other does; the others join them. Returns
+  /// its waypoints.
+  Polyline add(const Flight& flight, const TaskEnds& ends, TaskOrder& order) const {
+    Polyline flown;
+    for (const Point2& p : flight.points) {
+      flown.emplace_back(p.x(), p.y(), height_m_);
+    }
+    flown.front() = ends.start.value_or(flown.front());
+    flown.back() = ends.goal.value_or(params_.closed ? flown.front() : flown.back());
+    for (std::size_t i = 0; i < flight.needed.size(); ++i) {
+      const bool goes_on = i > 0 && bool(flight.needed[i - 1]) == bool(flight.needed[i]);
+      if (!flight.needed[i]) {
+        if (goes_on) {
+          order.last_join.push_back(flown[i]);
+        }
+      } else if (goes_on) {
+        order.passes.back().points.push_back(flown[i + 1]);
+      } else {
+        order.passes.push_back({{flown[i], flown[i + 1]}, std::exchange(order.last_join, {})});
+      }
+    }
+    return flown;
+  }
+
+  void fill(TaskOrder& order, const Problem& problem, const Sweep& found, const Request& request,
+            const TaskEnds& ends) const {
+    std::vector<Flight> flights{whole(found, ends)};
+    const double capacity_s = params_.capacity_s.value_or(kInfinity);
+    if (found.flown.time_s > capacity_s) {
+      flights = flights_of(problem, found, capacity_s);
+      if (flights.empty()) {
+        order.message = "no flight of capacity_s covers the farthest pass and returns";
+        return;
+      }
+    }
+    Polyline flown;
+    for (const Flight& flight : flights) {
+      if (flights.size() > 1) {  // all begin where the first does
+        const Vec3 home = ends.start.value_or(
+            Vec3(flight.points[0].x(), flight.points[0].y(), height_m_));
+        order.passes.push_back({{home}, std::exchange(order.last_join, {}), true});
+      }
+      const Polyline part = add(flight, ends, order);
+      flown.insert(flown.end(), part.begin(), part.end());
+    }
+    order.status = PlanStatus::solved;
+    order.closes = params_.closed;
+    order.time_s = flown_time(Route(without_repeats(flown)), request);
+    // Of other speeds than the vehicle's own nothing is known.
+    const bool is_bounded = request.wind.is_calm() && request.vehicle.speed_near.empty();
+    order.bound_s = is_bounded ? std::min(found.bound_s, order.time_s) : 0;
+  }
+
+  Params params_;
+  Area area_;
+  double height_m_;
+};
+}  // namespace
+}  // namespace altiplan::cover
+
+ALTIPLAN_PLUGIN(Task, "cover", altiplan::cover::Cover, altiplan::cover::Params,
+                "covers an area with islands by parallel rows, in a tour of least time")

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "altiplan/environment.hpp"
+#include "altiplan/flown_route.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::cover_task_test {
+namespace {
+
+const char* const kIslands =
+    "holes_m: [[[30, 30], [32, 55], [50, 52], [45, 28]], [[65, 60], [60, 75], [80, 85], [85, 66]]]";
+
+Request copter() {
+  Request request = testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e3, -1e3, 0}, {1e3, 1e3, 0}});
+  request.vehicle.speed_mps = 3;
+  request.vehicle.acceleration.mps2 = 1;
+  return request;
+}
+
+Polyline waypoints(const TaskOrder& order, const TaskEnds& ends) {
+  Polyline all{order.first(ends)};
+  for (const Pass& pass : order.passes) {
+    all.insert(all.end(), pass.join.begin(), pass.join.end());
+    all.insert(all.end(), pass.points.begin(), pass.points.end());
+  }
+  all.insert(all.end(), order.last_join.begin(), order.last_join.end());
+  all.push_back(order.last(ends));
+  return without_repeats(all);
+}
+
+/// Share of the free places of a hectare that the passes alone come within 1.5 m of.
+double covered(const TaskOrder& order, const Environment* islands) {
+  RandomStream random(7);
+  int free = 0;
+  int near = 0;
+  while (free < 40'000) {
+    const Vec3 p = random.in({{0, 0, 0}, {100, 100, 0}});
+    if (islands != nullptr && islands->clearance(p) <= 0) {
+      continue;
+    }
+    ++free;
+    near += std::any_of(order.passes.begin(), order.passes.end(), [&](const Pass& pass) {
+      for (std::size_t i = 1; i < pass.points.size(); ++i) {
+        if (point_leg_distance(p, pass.points[i - 1], pass.points[i]) <= 1.5) {
+          return true;
+        }
+      }
+      return false;
+    });
+  }
+  return double(near) / free;
+}
+
+TEST(Cover, CoversAroundIslandsAndComesBack) {
+  const auto task = testing::make_task("cover", "{" + std::string(kIslands) + "}");
+  const TaskOrder order = task->order(copter(), {});
+  ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+  const auto islands = task->obstacles();
+  EXPECT_GE(covered(order, islands.get()), 0.9997);  // 99.99 %, but for the noise of samples
+  const Polyline route = waypoints(order, {});
+  EXPECT_EQ(route.front(), route.back());
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    EXPECT_FALSE(islands->blocked(route[i - 1], route[i], 0)) << i;
+  }
+  EXPECT_NEAR(order.time_s, flown_time(route, copter()), 1e-6);
+  EXPECT_GE(order.bound_s, 0.8 * order.time_s);
+  EXPECT_LE(order.bound_s, order.time_s);
+}
+
+/// The best published tour of the empty square takes 1,385.18 s.
+TEST(Cover, ComesBackAlongAStripThatItCovers) {
+  const TaskOrder order = testing::make_task("cover")->order(copter(), {});
+  EXPECT_LT(order.time_s, 1370);
+  EXPECT_GE(covered(order, nullptr), 0.9997);
+}
+
+TEST(Cover, BeginsAndEndsWhereItIsAsked) {
+  const auto task = testing::make_task("cover", "{" + std::string(kIslands) + "}");
+  const TaskEnds corner{Vec3(0, 0, 5), {}};
+  const TaskOrder around = task->order(copter(), corner);
+  EXPECT_EQ(waypoints(around, corner).front(), Vec3(0, 0, 5));
+  EXPECT_EQ(waypoints(around, corner).back(), Vec3(0, 0, 5));
+  const TaskEnds across{Vec3(0, 0, 0), Vec3(100, 100, 0)};
+  const TaskOrder over = task->order(copter(), across);
+  EXPECT_EQ(waypoints(over, across).front(), Vec3(0, 0, 0));
+  EXPECT_EQ(waypoints(over, across).back(), Vec3(100, 100, 0));
+  EXPECT_GE(covered(over, task->obstacles().get()), 0.9997);
+  const auto open = testing::make_task("cover", "{closed: false, " + std::string(kIslands) + "}");
+  EXPECT_LT(open->order(copter(), {}).time_s, around.time_s);
+}
+
+TEST(Cover, FlightsKeepTheCapacityAndShareAPlace) {
+  const auto task =
+      testing::make_task("cover", "{capacity_s: 500, " + std::string(kIslands) + "}");
+  const TaskOrder order = task->order(copter(), {});
+  ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+  const Vec3 home = order.passes[0].points[0];
+  const Polyline route = waypoints(order, {});
+  Polyline flight{home};
+  int flights = 0;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    flight.push_back(route[i]);
+    if (route[i] == home) {
+      EXPECT_LE(flown_time(Route(flight), copter()), 500 + 1e-6);
+      flight = {home};
+      ++flights;
+    }
+  }
+  EXPECT_EQ(flight.size(), 1U);
+  EXPECT_GE(flights, 3);
+  EXPECT_EQ(std::count_if(order.passes.begin(), order.passes.end(),
+                          [](const Pass& pass) { return pass.takes_off; }),
+            flights);
+  EXPECT_GE(covered(order, task->obstacles().get()), 0.9997);
+  const auto small = testing::make_task("cover", "{capacity_s: 20}");
+  EXPECT_EQ(small->order(copter(), {}).status, PlanStatus::no_route);
+}
+
+TEST(Cover, EndsWithItsBudget) {
+  const auto task = testing::make_task("cover");
+  Request request = copter();
+  request.budget.max_iterations = 0;
+  EXPECT_EQ(task->order(request, {}).status, PlanStatus::timed_out);
+  request.budget.max_iterations = 10;
+  const TaskOrder first = task->order(request, {});
+  EXPECT_EQ(first.status, PlanStatus::solved);
+  EXPECT_TRUE(first.budget_hit);
+  EXPECT_LE(task->order(copter(), {}).time_s, first.time_s);
+}
+
+TEST(Cover, RefusesAreasThatAreNone) {
+  EXPECT_THROW(testing::make_task("cover", "{outline_m: [[0, 0], [9, 9], [9, 0], [0, 9]]}"), Error);
+  EXPECT_THROW(testing::make_task("cover", "{holes_m: [[[90, 90], [110, 90], [95, 95]]]}"), Error);
+  EXPECT_NE(testing::parameter_problems("task", "cover", "{spacing_m: 0}"), "");
+  EXPECT_NE(testing::parameter_problems("task", "cover", "{closed: false, capacity_s: 9}"), "");
+}
+}  // namespace
+}  // namespace altiplan::cover_task_test
