@@ -153,7 +153,7 @@ class Energy(case.CliCase):
         self.assertIn("remove vehicle.acceleration_mps2", err)
 
     def test_a_flight_has_its_own_time(self):
-        ran = self.ran("{speed_mps: 9, acceleration_mps2: 1, energy: {multirotor: {mass_kg: 1.5}}}",
+        ran = self.ran("{speed_mps: 9, acceleration_mps2: 20, energy: {multirotor: {mass_kg: 1.5}}}",
                        steps="  - plan: astar\n    with: {cell_m: [50, 50, 50]}\n  - fly: route\n")
         flown = ran["flight"]["metrics"]
         self.assertEqual(flown["time_s"], flown["duration_s"])
