@@ -104,7 +104,8 @@ void add_zones(const Mission& mission, const Route& route, const RouteFormat& fo
                formats::MissionFile& file, std::vector<std::string>& messages) {
   const World& world = mission.known;
   const bool flat = format.zones == Zones::fence;
-  Fence fence = flat ? flat_fence_of(world, route.chords(kChordTolerance)) : zones_of(world);
+  Fence fence = flat ? flat_fence_of(world, route.chords(kChordTolerance), mission.vehicle_type)
+                     : zones_of(world);
   messages.insert(messages.end(), fence.notes.begin(), fence.notes.end());
   if (fence.zones.empty()) {
     return;

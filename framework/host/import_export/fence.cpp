@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "altiplan/shape.hpp"
+#include "host/import_export/fence_fit.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -115,6 +116,69 @@ std::vector<WorldZone> all_zones(const World& world) {
   return zones;
 }
 
+/// The circle around a prism's outline, or within that of a keep-in zone, if they are as good as
+/// the same: airspace of other programs says circles by their chords.
+std::optional<WorldZone> circle_from(const Frame& frame, const WorldZone& zone) {
+  constexpr std::size_t kFewest = 8;  // corners
+  constexpr double kMetres = 1.5;     // the outline may be off the circle, or a share of its radius
+  constexpr double kShare = 0.0005;
+  const auto* prism = std::get_if<Prism>(&zone.flat);
+  if (prism == nullptr || prism->outline.size() < kFewest || !prism->holes.empty()) {
+    return std::nullopt;
+  }
+  const formats::Ring& ring = prism->outline;
+  double x = 0;
+  double y = 0;
+  for (const formats::Point2& p : ring) {
+    x += p[0] / double(ring.size());
+    y += p[1] / double(ring.size());
+  }
+  const formats::Point2 centre = frame.to_lonlat(x, y);
+  const auto distance = [&](double px, double py) {
+    return geodesic_course(centre, frame.to_lonlat(px, py)).metres;
+  };
+  double inner = kInfinity;
+  double outer = 0;
+  for (std::size_t n = 0; n < ring.size(); ++n) {
+    const formats::Point2& p = ring[n];
+    const formats::Point2& q = ring[(n + 1) % ring.size()];
+    const double dx = q[0] - p[0];
+    const double dy = q[1] - p[1];
+    const double length2 = dx * dx + dy * dy;
+    const double along = std::clamp(((x - p[0]) * dx + (y - p[1]) * dy) / length2, 0.0, 1.0);
+    inner = std::min(inner, distance(p[0] + along * dx, p[1] + along * dy));
+    outer = std::max(outer, distance(p[0], p[1]));
+  }
+  if (outer - inner > std::max(kMetres, kShare * outer)) {
+    return std::nullopt;
+  }
+  const double local = std::hypot(ring[0][0] - x, ring[0][1] - y);
+  const double scale = local / distance(ring[0][0], ring[0][1]);
+  WorldZone circle = zone;
+  circle.zone.volumes.front().polygon = {};
+  circle.zone.volumes.front().centre = centre;
+  circle.zone.volumes.front().radius_m = zone.zone.keeps_in() ? inner : outer;
+  circle.flat = Cylinder{x, y, outer * scale * (1 + kShare)};
+  return circle;
+}
+
+/// The ring with further corners on its long edges, which are straight in the world's frame: an
+/// autopilot's are straight in longitude and latitude.
+formats::Ring dense(const formats::Ring& ring) {
+  constexpr double kStep = 1500;  // metres, between which both are within 5 cm
+  formats::Ring result;
+  for (std::size_t n = 0; n < ring.size(); ++n) {
+    const formats::Point2& p = ring[n];
+    const formats::Point2& q = ring[(n + 1) % ring.size()];
+    const int steps = std::max(1, int(std::ceil(std::hypot(q[0] - p[0], q[1] - p[1]) / kStep)));
+    for (int k = 0; k < steps; ++k) {
+      const double share = double(k) / steps;
+      result.push_back({p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1])});
+    }
+  }
+  return result;
+}
+
 bool crosses(const Shape& flat, const Polyline& route) {
   for (std::size_t n = 0; n + 1 < route.size(); ++n) {
     if (leg_depth(flat, route[n], route[n + 1]) > 0) {
@@ -124,6 +188,13 @@ bool crosses(const Shape& flat, const Polyline& route) {
   return false;
 }
 
+/// True if all of the route is inside the circle.
+bool holds(const WorldZone& circle, const Frame& frame, const Polyline& route) {
+  const formats::ZoneVolume& volume = circle.zone.volumes.front();
+  return std::all_of(route.begin(), route.end(), [&](const Vec3& p) {
+    return geodesic_course(volume.centre, frame.to_lonlat(p.x(), p.y())).metres < volume.radius_m;
+  });
+}
 }  // namespace
 
 Fence zones_of(const World& world) {
@@ -134,7 +205,7 @@ Fence zones_of(const World& world) {
   return fence;
 }
 
-Fence flat_fence_of(const World& world, const Polyline& route) {
+Fence flat_fence_of(const World& world, const Polyline& route, VehicleType vehicle) {
   Fence fence;
   std::size_t choices = 0;
   for (const WorldZone& zone : all_zones(world)) {
@@ -157,7 +228,28 @@ Fence flat_fence_of(const World& world, const Polyline& route) {
     if (!keeps_in && !volume.polygon.holes.empty()) {
       fence.notes.push_back(name + " is in the fence without its holes");
     }
+    const std::optional<WorldZone> circle = circle_from(world.frame(), zone);
+    if (circle &&
+        (keeps_in ? holds(*circle, world.frame(), route) : !crosses(circle->flat, route))) {
+      fence.zones.push_back(circle->zone);
+      continue;
+    }
     fence.zones.push_back(zone.zone);
+    if (const auto* prism = std::get_if<Prism>(&zone.flat)) {
+      formats::Polygon& polygon = fence.zones.back().volumes.front().polygon;
+      polygon.outline = lonlat(world.frame(), dense(prism->outline));
+      polygon.holes.clear();
+      for (const formats::Ring& hole : prism->holes) {
+        polygon.holes.push_back(lonlat(world.frame(), dense(hole)));
+      }
+    }
+  }
+  formats::Ring points;
+  for (const Vec3& p : route) {
+    points.push_back(world.frame().to_lonlat(p.x(), p.y()));
+  }
+  for (std::string& note : fit_fence(fence.zones, points, fence_limits(vehicle))) {
+    fence.notes.push_back(std::move(note));
   }
   if (choices > 0) {
     fence.notes.push_back("an autopilot keeps in all of the fence's " + std::to_string(choices) +

@@ -6,7 +6,7 @@
 namespace altiplan::host {
 
 Exported export_fence(const Mission& mission, const Route& route) {
-  Fence fence = flat_fence_of(mission.known, route.chords(kChordTolerance));
+  Fence fence = flat_fence_of(mission.known, route.chords(kChordTolerance), mission.vehicle_type);
   Exported exported;
   exported.messages = std::move(fence.notes);
   if (fence.zones.empty()) {
