@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../crew.hpp"
 #include "altiplan/check.hpp"
-#include "crew.hpp"
 
 namespace altiplan::kit {
 namespace {

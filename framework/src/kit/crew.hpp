@@ -22,7 +22,7 @@ class Crew {
         others_.emplace_back([this, n] { live(n); });
       }
     } catch (const std::system_error&) {
-      // No more threads are available: the existing ones process all ants.
+      // No more threads are available: the existing ones do all the work.
     }
   }
   Crew(const Crew&) = delete;
