@@ -37,6 +37,24 @@ TEST(RunValues, WithoutReplansTheirSumsHaveNoValue) {
   EXPECT_EQ(values_of_flight("[]"), expected);
 }
 
+TEST(RunValues, TheGapIsAShareOfTheBound) {
+  Json result =
+      Json::parse(R"({"metrics": {}, "setup_time_s": 0, "flight": null, "cost": 105, "bound": 100,
+    "steps": [{"id": "plan", "time_s": 0, "setup_time_s": 0, "accepted": true, "budget_hit": false,
+               "counters": {}, "metrics": {}, "cost": 110, "bound": 100},
+              {"id": "none", "time_s": 0, "setup_time_s": 0, "accepted": false, "budget_hit": false,
+               "counters": {}, "metrics": {}, "cost": null, "bound": 0}]})");
+  const auto values = values_of(result);
+  const std::map<std::string, double> of{values.begin(), values.end()};
+  EXPECT_DOUBLE_EQ(of.at("gap"), 0.05);
+  EXPECT_DOUBLE_EQ(of.at("steps.plan.gap"), 0.1);
+  EXPECT_EQ(of.at("steps.plan.cost"), 110);
+  EXPECT_FALSE(of.contains("steps.none.cost"));
+  EXPECT_FALSE(of.contains("steps.none.gap"));
+  EXPECT_EQ(why_no_value("gap"), "");
+  EXPECT_EQ(why_no_value("steps.plan.gap"), "");
+}
+
 TEST(RunValues, NamesOfReplansAreKnown) {
   EXPECT_EQ(why_no_value("flight.replan_time_s"), "");
   EXPECT_EQ(why_no_value("flight.replan_counters.nodes_added"), "");

@@ -25,6 +25,16 @@ class Values {
       add(prefix + name, value);
     }
   }
+  /// Cost, bound, and by what share of the bound the route may cost too much.
+  void add_cost(const std::string& prefix, const host::Json& of) {
+    const host::Json cost = of.value("cost", host::Json());  // results of former versions have none
+    const host::Json bound = of.value("bound", host::Json());
+    add(prefix + "cost", cost);
+    add(prefix + "bound", bound);
+    if (cost.is_number() && bound.is_number() && bound.get<double>() > 0) {
+      all_[prefix + "gap"] = host::Cost{cost.get<double>(), bound.get<double>()}.gap();
+    }
+  }
   /// Sums over all replans: their time (s), and each of their counters.
   void add_replans(const host::Json& replans) {
     add("flight.replans", replans.size());
@@ -60,6 +70,7 @@ RunValues values_of(const host::Json& result) {
   Values values;
   values.add_each("", result.at("metrics"));
   values.add("setup_time_s", result.at("setup_time_s"));
+  values.add_cost("", result);
   for (const host::Json& step : result.at("steps")) {
     const std::string prefix = "steps." + step.at("id").get<std::string>() + ".";
     values.add_each(prefix + "counters.", step.at("counters"));
@@ -68,6 +79,7 @@ RunValues values_of(const host::Json& result) {
     for (const char* name : {"time_s", "setup_time_s", "accepted", "budget_hit"}) {
       values.add(prefix + name, step.at(name));
     }
+    values.add_cost(prefix, step);
   }
   if (const host::Json& flight = result.at("flight"); !flight.is_null()) {
     for (const char* name : kOfFlightAlone) {
@@ -87,9 +99,9 @@ std::string why_no_value(const std::string& name, const std::vector<std::string>
   static const std::vector<std::string> kOfRoute = keys_of(host::to_json(Measures{}));
   static const std::vector<std::string> kOfRun =
       joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
-                        "wall_time_s", "cpu_time_s", "peak_memory_mb"});
-  static const std::vector<std::string> kOfStep =
-      joined(kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit"});
+                        "wall_time_s", "cpu_time_s", "peak_memory_mb", "cost", "bound", "gap"});
+  static const std::vector<std::string> kOfStep = joined(
+      kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit", "cost", "bound", "gap"});
   static const std::vector<std::string> kOfFlight =
       joined(joined(kOfRoute, kOfFlightAlone), {"replans", "replan_time_s", "handovers"});
   const std::size_t last = name.rfind('.');
