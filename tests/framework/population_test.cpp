@@ -5,67 +5,16 @@
 #include "altiplan/check.hpp"
 #include "altiplan/kit/population/population.hpp"
 #include "altiplan/kit/population/variation.hpp"
+#include "support/populations.hpp"
 #include "support/published_routes.hpp"
 
 namespace altiplan::population_test {
 namespace {
 
-const char* const kAll[] = {"pso",     "spso",      "differential_evolution",
-                            "genetic", "grey_wolf", "nsga2"};
-
-/// A column between start and goal.
-Request around_a_column() {
-  return testing::request_in(testing::world_of(std::vector<Shape>{Cylinder{500, 10, 120}}),
-                             {0, 0, 100}, {1000, 0, 100}, {{0, -400, 50}, {1000, 400, 150}});
-}
-
-std::unique_ptr<Planner> planner(const std::string& name, const std::string& more = "") {
-  return testing::make_planner(
-      name, "{waypoints: 3, evaluations: 4000, encoding: cartesian" + more + "}");
-}
-
-TEST(Population, EachPlannerFindsARouteAroundAColumn) {
-  const Request request = around_a_column();
-  for (const char* name : kAll) {
-    const PlanResult result = planner(name)->plan(request);
-    ASSERT_EQ(result.status, PlanStatus::solved) << name << ": " << result.message;
-    EXPECT_TRUE(check(result.route, request).ok()) << name;
-    EXPECT_EQ(result.route.size(), 5U) << name;
-    EXPECT_LT(length(result.route), 1700) << name;
-    EXPECT_EQ(testing::counter(result, "expanded"), 4000) << name;
-  }
-}
-
-TEST(Population, OneResultForAnyNumberOfThreads) {
-  Request request = around_a_column();
-  for (const char* name : kAll) {
-    request.threads = 1;
-    const PlanResult alone = planner(name)->plan(request);
-    request.threads = 3;
-    EXPECT_EQ(alone.route, planner(name)->plan(request).route) << name;
-  }
-}
-
-TEST(Population, AnEvaluationIsAnIterationOfTheBudget) {
-  Request request = around_a_column();
-  for (const char* name : kAll) {
-    double before = kInfinity;
-    for (const std::uint64_t budget : {300U, 1000U, 2777U}) {
-      request.budget.max_iterations = budget;
-      const PlanResult result = planner(name)->plan(request);
-      EXPECT_EQ(testing::counter(result, "expanded"), std::int64_t(budget)) << name;
-      EXPECT_TRUE(result.budget_hit) << name;
-      const double now = result.status == PlanStatus::solved ? length(result.route) : kInfinity;
-      EXPECT_LE(now, before) << name;
-      before = now;
-    }
-  }
-}
-
 /// A route through the column has a finite cost: the rule of the objective lets it pass.
 TEST(Population, TheRuleDecidesWhoseWordCounts) {
-  const Request request = around_a_column();
-  const PlanResult result = planner("pso", ", rule: objective")->plan(request);
+  const Request request = testing::around_a_column();
+  const PlanResult result = testing::population_planner("pso", ", rule: objective")->plan(request);
   ASSERT_EQ(result.status, PlanStatus::solved);
   EXPECT_FALSE(check(result.route, request).ok());
   EXPECT_NEAR(length(result.route), 1000, 5);
@@ -116,8 +65,9 @@ TEST(RouteSpace, SphericalVectorsAreThoseOfTheAuthorsProgram) {
 }
 
 TEST(RouteSpace, HeightsAboveGroundNeedAGround) {
-  const Request request = around_a_column();
-  EXPECT_THROW(planner("pso", ", above_ground_m: [50, 60]")->plan(request), ParameterError);
+  const Request request = testing::around_a_column();
+  EXPECT_THROW(testing::population_planner("pso", ", above_ground_m: [50, 60]")->plan(request),
+               ParameterError);
   EXPECT_NE(testing::parameter_problems("planner", "pso", "{above_ground_m: [60, 50]}"), "");
 }
 
