@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
 #include "altiplan/formats/mission_file.hpp"
+#include "altiplan/formats/qgc_survey.hpp"
 #include "commands.hpp"
 #include "flight_text.hpp"
 #include "host/base/words.hpp"
@@ -23,6 +25,7 @@ namespace {
 struct CheckArguments {
   std::optional<std::string> result;
   std::optional<std::string> route;
+  bool survey = false;
   MissionOptions mission;
   host::Overrides overrides;
 };
@@ -137,6 +140,40 @@ int check_route(const CheckArguments& arguments) {
   return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json);
 }
 
+/// Makes a plan's surveys again and compares them with its items.
+int check_survey(const CheckArguments& arguments) {
+  host::Json surveys = host::Json::array();
+  double differ_m = 0;
+  double coverage = 1;
+  bool are_equal = true;
+  for (const formats::qgc::SurveyMatch& match : formats::qgc::match_surveys(*arguments.result)) {
+    const bool is_equal = match.problem.empty();
+    are_equal = are_equal && is_equal;
+    differ_m = std::max(differ_m, match.differ_m);
+    coverage = std::min(coverage, match.coverage);
+    surveys.push_back({{"item", match.place},
+                       {"items", match.commands},
+                       {"items_differ_m", is_equal ? host::Json(match.differ_m) : host::Json()},
+                       {"coverage", match.coverage},
+                       {"plane", match.plane},
+                       {"problem", match.problem}});
+    if (!arguments.mission.plan.json) {
+      std::printf("%s: %zu items, %s; lines cover %s %% of the area\n", match.place.c_str(),
+                  match.commands,
+                  is_equal ? ("as made again, to " + fixed(match.differ_m, 3) + " m").c_str()
+                           : match.problem.c_str(),
+                  fixed(100 * match.coverage, 2).c_str());
+    }
+  }
+  if (arguments.mission.plan.json) {
+    std::cout << host::file_text({{"surveys", surveys},
+                                  {"items_differ_m", are_equal ? host::Json(differ_m) : host::Json()},
+                                  {"coverage", coverage}});
+  }
+  constexpr double kAsMade = 0.1;  // metres
+  return are_equal && differ_m <= kAsMade ? kDone : kNoRoute;
+}
+
 /// What is written besides the verdict; returns the options.
 std::vector<Option*> add_outputs(App& command, PlanCheck& plan) {
   const auto file = [&](const char* name, std::optional<std::string>& value, const char* what) {
@@ -178,6 +215,13 @@ bool is_plan(const CheckArguments& arguments) {
 
 /// Throws UsageError for options that do not fit together.
 void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>& outputs) {
+  if (arguments.survey) {
+    const bool is_alone = arguments.result && !is_plan(arguments);
+    if (!is_alone) {
+      throw UsageError{"--survey takes a .plan alone"};
+    }
+    return;
+  }
   if (!arguments.result && !arguments.route) {
     throw UsageError{
         "a result, a mission and --terrain or --scenario, or --route and --scenario is required"};
@@ -197,10 +241,13 @@ void add_check(App& app, Action& action) {
   auto outputs = std::make_shared<std::vector<Option*>>();
   const auto prepare = [outputs](CheckArguments& given) {
     expect_fitting(given, *outputs);
-    given.mission.plan = checked_plan(given.mission, given.result.value_or(""));
+    if (!given.survey) {
+      given.mission.plan = checked_plan(given.mission, given.result.value_or(""));
+    }
   };
   const auto check = [](const CheckArguments& given) {
-    return is_plan(given) ? check_plan(given.mission.plan, given.overrides)
+    return given.survey   ? check_survey(given)
+           : is_plan(given) ? check_plan(given.mission.plan, given.overrides)
            : given.result ? check_result(given)
                           : check_route(given);
   };
@@ -228,6 +275,11 @@ void add_check(App& app, Action& action) {
       .add_option("--fix-returns FILE", arguments.mission.plan.fixed_returns,
                   "with --returns: write the least return height with which all pass (.param)")
       ->needs(outputs->back());
+  command
+      .add_flag("--survey", arguments.survey,
+                "make the surveys of a QGroundControl .plan again from their settings, and compare "
+                "them with its items")
+      ->excludes(route);
   add_plugin_path(command, arguments.overrides);
   command.add_flag("--json", arguments.mission.plan.json, "print as JSON");
   set_example(command, "altiplan check mission.plan --terrain dem.tif --min-agl 50");

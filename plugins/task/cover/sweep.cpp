@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "altiplan/geometry.hpp"
+#include "altiplan/kit/tour.hpp"
 #include "pattern.hpp"
-#include "tour.hpp"
 
 namespace altiplan::cover {
 namespace {
@@ -61,7 +61,7 @@ class Attempt {
       joins.emplace(area_, problem_.time, pieces_.points());
       costs = costs_of(*joins, rows);
     }
-    Tour tour(pieces_.lines.size(), std::move(costs));
+    kit::Tour tour(pieces_.lines.size(), std::move(costs));
     tour.construct();
     std::uint64_t round = 0;
     bool is_cut = false;
@@ -85,7 +85,7 @@ class Attempt {
  private:
   double cell() const {
     const Point2 size = area_.max() - area_.min();
-    return std::max(problem_.spacing_m / 30, std::sqrt(size.x() * size.y() / 4e6));
+    return std::max(problem_.spacing_m / 25, std::sqrt(size.x() * size.y() / 4e6));
   }
 
   /// Without a start or a goal an open tour begins or ends anywhere: joins with such an end cost
@@ -231,7 +231,7 @@ class Attempt {
 /// By finer samples than any choice has seen: repairs what is uncovered by them.
 Swept finish(const Problem& problem, Flown& flown) {
   const Point2 size = problem.area.max() - problem.area.min();
-  const double cell = std::max(problem.spacing_m / 75, std::sqrt(size.x() * size.y() / 25e6));
+  const double cell = std::max(problem.spacing_m / 60, std::sqrt(size.x() * size.y() / 16e6));
   Swept swept(problem.area, problem.half(), cell);
   for (std::size_t i = 0; i < flown.legs(); ++i) {
     swept.add(flown.leg(i));
@@ -269,49 +269,64 @@ double bound_of(const Problem& problem, const Flown& flown) {
   if (!problem.closed || problem.goal) {
     longest = n == 0 ? 0 : *std::max_element(cost.begin(), cost.end());
   }
-  return std::max(by_area, rows + tour_bound(n / 2, cost, flown.time_s - rows, kSteps) - longest);
+  return std::max(by_area, rows + kit::tour_bound(n / 2, cost, flown.time_s - rows, kSteps) - longest);
+}
+}  // namespace
+
+namespace {
+/// Takes a tour if it is faster once it is finished.
+void take(const Problem& problem, Flown flown, Sweep& best) {
+  if (flown.seconds(problem.time) >= best.flown.time_s) {
+    return;
+  }
+  const Swept swept = finish(problem, flown);
+  if (flown.time_s >= best.flown.time_s) {
+    return;
+  }
+  best.needed.assign(flown.legs(), 0);
+  for (std::size_t k = 0; k < flown.legs(); ++k) {
+    const Segment leg = flown.leg(k);
+    const Point2 about[] = {leg.a, leg.b};
+    best.needed[k] = swept.lost({&leg, 1}, {}, about, 0) > 0;
+  }
+  best.flown = std::move(flown);
 }
 }  // namespace
 
 Sweep sweep(const Problem& problem, int attempts, std::uint64_t seed,
             const std::function<bool(std::uint64_t)>& spent) {
   Sweep best;
+  Flown first;  // made at once; the others search for the order
   const std::vector<Pattern> tried = patterns(problem);
   for (int i = 0; i <= attempts; ++i) {
-    // The first is made at once, the others with a search of the order.
     const std::uint64_t rounds = i == 0 ? 1 : kRounds;
     const std::uint64_t done = best.iterations;
-    if (spent(done + rounds - 1)) {
-      best.is_complete = false;
-      break;
-    }
     const Pattern& pattern = tried[std::size_t(std::max(0, i - 1)) % tried.size()];
     if (pattern.lines.empty()) {
       continue;
     }
-    auto flown = Attempt(problem, pattern).run(seed + std::uint64_t(i), rounds, [&](auto round) {
-      return spent(done + round);
-    });
+    std::optional<Flown> flown;
+    if (!spent(done + rounds - 1)) {
+      flown = Attempt(problem, pattern).run(seed + std::uint64_t(i), rounds, [&](auto round) {
+        return spent(done + round);
+      });
+    }
     if (!flown) {
       best.is_complete = false;
       break;
     }
     best.iterations += rounds;
-    if (flown->seconds(problem.time) < best.flown.time_s) {
-      for (Point2& p : flown->points) {
-        p = turned(p, -pattern.angle);
-      }
-      const Swept swept = finish(problem, *flown);
-      if (flown->time_s < best.flown.time_s) {
-        best.flown = *std::move(flown);
-        best.needed.assign(best.flown.legs(), 0);
-        for (std::size_t k = 0; k < best.flown.legs(); ++k) {
-          const Segment leg = best.flown.leg(k);
-          const Point2 about[] = {leg.a, leg.b};
-          best.needed[k] = swept.lost({&leg, 1}, {}, about, 0) > 0;
-        }
-      }
+    for (Point2& p : flown->points) {
+      p = turned(p, -pattern.angle);
     }
+    if (i == 0) {
+      first = *std::move(flown);
+    } else {
+      take(problem, *std::move(flown), best);
+    }
+  }
+  if (!first.points.empty()) {
+    take(problem, std::move(first), best);
   }
   if (!best.flown.points.empty()) {
     best.bound_s = std::min(best.flown.time_s, bound_of(problem, best.flown));

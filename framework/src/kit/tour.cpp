@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tour.hpp"
+#include "altiplan/kit/tour.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace altiplan::cover {
+namespace altiplan::kit {
 namespace {
 
-constexpr double kGain = 1e-9;
-constexpr std::size_t kNear = 10;
+constexpr double kTourGain = 1e-9;
+constexpr std::size_t kNearEnds = 10;
 
 /// SplitMix64.
-struct Dice {
+struct TourDice {
   std::uint64_t state;
   std::uint64_t next() {
     std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
@@ -34,7 +34,7 @@ Tour::Tour(std::size_t pieces, std::vector<double> cost)
         near.push_back(int(other));
       }
     }
-    const std::size_t kept = std::min(kNear, near.size());
+    const std::size_t kept = std::min(kNearEnds, near.size());
     std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(kept), near.end(),
                       [&](int a, int b) {
                         const double ca = join(int(end), a);
@@ -132,7 +132,7 @@ bool Tour::try_two_opt(int piece) {
     const double old = join(a, in(after(k)));
     for (const int c : near_[std::size_t(a)]) {
       const double first = join(a, c);
-      if (first >= old - kGain) {
+      if (first >= old - kTourGain) {
         break;
       }
       const int j = position_[std::size_t(c / 2)];
@@ -141,7 +141,7 @@ bool Tour::try_two_opt(int piece) {
       }
       const double gain =
           old + join(c, in(after(j))) - first - join(in(after(k)), in(after(j)));
-      if (gain > kGain) {
+      if (gain > kTourGain) {
         touch(after(k)), touch(j), touch(after(j)), touch(k);
         reverse(after(k), j);
         cost_ -= gain;
@@ -154,7 +154,7 @@ bool Tour::try_two_opt(int piece) {
   const double old = join(out(before(k)), a);
   for (const int c : near_[std::size_t(a)]) {
     const double first = join(a, c);
-    if (first >= old - kGain) {
+    if (first >= old - kTourGain) {
       break;
     }
     const int j = position_[std::size_t(c / 2)];
@@ -163,7 +163,7 @@ bool Tour::try_two_opt(int piece) {
     }
     const double gain =
         old + join(out(before(j)), c) - first - join(out(before(k)), out(before(j)));
-    if (gain > kGain) {
+    if (gain > kTourGain) {
       touch(before(k)), touch(j), touch(before(j)), touch(k);
       reverse(k, before(j));
       cost_ -= gain;
@@ -189,7 +189,7 @@ bool Tour::try_or_opt(int piece) {
       const int left = out(before(from));
       const int right = in(after(to));
       const double removed = join(left, in(from)) + join(out(to), right) - join(left, right);
-      if (removed <= kGain) {
+      if (removed <= kTourGain) {
         continue;
       }
       for (const int side : {0, 1}) {
@@ -197,7 +197,7 @@ bool Tour::try_or_opt(int piece) {
         const int other = side == 0 ? out(to) : in(from);
         for (const int c : near_[std::size_t(mine)]) {
           const double first = join(mine, c);
-          if (first >= removed - kGain) {
+          if (first >= removed - kTourGain) {
             break;
           }
           const int j = position_[std::size_t(c / 2)];
@@ -210,11 +210,11 @@ bool Tour::try_or_opt(int piece) {
           const bool leaves = out(j) == c;
           const int next = leaves ? (after(j) == from ? right : in(after(j)))
                                   : (before(j) == to ? left : out(before(j)));
-          if ((leaves && after(j) == from && false) || next == c) {
+          if (next == c) {
             continue;
           }
           const double gain = removed + join(c, next) - first - join(other, next);
-          if (gain <= kGain) {
+          if (gain <= kTourGain) {
             continue;
           }
           // Rebuild: the part is taken out and put in again.
@@ -257,13 +257,10 @@ bool Tour::try_or_opt(int piece) {
 }
 
 void Tour::improve(std::uint64_t seed, const std::function<bool()>& spent) {
-  if (n() < 8) {
-    // Few pieces: perturbations of three cuts still fit from 4 on.
-    if (n() < 4) {
-      return;
-    }
+  if (n() < 4) {
+    return;
   }
-  Dice dice{seed};
+  TourDice dice{seed};
   std::vector<int> best = entry_;
   std::vector<int> best_position = position_;
   double best_cost = cost_;
@@ -280,19 +277,17 @@ void Tour::improve(std::uint64_t seed, const std::function<bool()>& spent) {
     turned.insert(turned.end(), entry_.begin(), entry_.begin() + begin);
     std::rotate(turned.begin() + cuts[0] + 1, turned.begin() + cuts[1] + 1,
                 turned.begin() + cuts[2] + 1);
-    const double before_cost = cost_;
-    (void)before_cost;
     set_entries(std::move(turned));
     const int middle = cuts[0] + (cuts[2] - cuts[1]);
     for (const int k : {cuts[0], cuts[0] + 1, middle, middle + 1, cuts[2], (cuts[2] + 1) % n()}) {
       touch(k);
     }
     settle();
-    if (cost_ < best_cost - kGain) {
+    if (cost_ < best_cost - kTourGain) {
       best = entry_;
       best_position = position_;
       best_cost = cost_;
-    } else if (cost_ > best_cost + kGain) {
+    } else if (cost_ > best_cost + kTourGain) {
       entry_ = best;
       position_ = best_position;
       cost_ = best_cost;
@@ -387,4 +382,4 @@ double tour_bound(std::size_t pieces, const std::vector<double>& cost, double up
   }
   return best;
 }
-}  // namespace altiplan::cover
+}  // namespace altiplan::kit

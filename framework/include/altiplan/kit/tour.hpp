@@ -5,11 +5,13 @@
 #include <functional>
 #include <vector>
 
-namespace altiplan::cover {
+#include "altiplan/api.hpp"
+
+namespace altiplan::kit {
 
 /// A closed tour of pieces that are flown once each, in either direction: piece k has the ends 2k
 /// and 2k + 1. Joins cost what a symmetric matrix says.
-class Tour {
+class ALTIPLAN_API Tour {
  public:
   /// `cost`: of the join between two ends, row by row, for all ends.
   Tour(std::size_t pieces, std::vector<double> cost);
@@ -49,5 +51,5 @@ class Tour {
 
 /// Lower bound of the cost of all closed tours: the greatest 1-tree that Held and Karp's ascent
 /// finds with the pieces as forced edges.
-double tour_bound(std::size_t pieces, const std::vector<double>& cost, double upper, int steps);
-}  // namespace altiplan::cover
+ALTIPLAN_API double tour_bound(std::size_t pieces, const std::vector<double>& cost, double upper, int steps);
+}  // namespace altiplan::kit
