@@ -114,6 +114,13 @@ class Cover final : public Task {
       problem.goal = flat(*ends.goal);
       problem.closed = false;
     }
+    for (const auto& end : {problem.start, problem.goal}) {
+      if (end && !area_.sees(*end, *end)) {
+        order.status = PlanStatus::invalid_problem;
+        order.message = "the start and the goal must lie in the area, outside its islands";
+        return order;
+      }
+    }
     BudgetWatch watch(request.budget);
     RandomStream random = request.random;
     const Sweep found = sweep(problem, params_.attempts, random(),
@@ -139,19 +146,36 @@ class Cover final : public Task {
       std::rotate(flight.points.begin(), flight.points.begin() + first, flight.points.end());
       std::rotate(flight.needed.begin(), flight.needed.begin() + first, flight.needed.end());
       flight.points.push_back(flight.points.front());
+      return flight;
+    }
+    while (!ends.start && !flight.needed.front()) {  // an open tour begins and ends with a pass
+      flight.points.erase(flight.points.begin());
+      flight.needed.erase(flight.needed.begin());
+    }
+    while (!ends.goal && !params_.closed && !flight.needed.back()) {
+      flight.points.pop_back();
+      flight.needed.pop_back();
     }
     return flight;
   }
 
   /// Adds a flight's passes, the legs that cover what no other does; the others join them. Returns
   /// its waypoints.
-  Polyline add(const Flight& flight, const TaskEnds& ends, TaskOrder& order) const {
+  Polyline add(Flight flight, const TaskEnds& ends, TaskOrder& order) const {
     Polyline flown;
     for (const Point2& p : flight.points) {
       flown.emplace_back(p.x(), p.y(), height_m_);
     }
-    flown.front() = ends.start.value_or(flown.front());
-    flown.back() = ends.goal.value_or(params_.closed ? flown.front() : flown.back());
+    // A start or goal at another height is joined to the passes' own.
+    if (ends.start && *ends.start != flown.front()) {
+      flown.insert(flown.begin(), *ends.start);
+      flight.needed.insert(flight.needed.begin(), 0);
+    }
+    const Vec3 end = ends.goal.value_or(params_.closed ? flown.front() : flown.back());
+    if (end != flown.back()) {
+      flown.push_back(end);
+      flight.needed.push_back(0);
+    }
     for (std::size_t i = 0; i < flight.needed.size(); ++i) {
       const bool goes_on = i > 0 && bool(flight.needed[i - 1]) == bool(flight.needed[i]);
       if (!flight.needed[i]) {

@@ -88,6 +88,8 @@ TEST(Cover, BeginsAndEndsWhereItIsAsked) {
   EXPECT_EQ(waypoints(over, across).front(), Vec3(0, 0, 0));
   EXPECT_EQ(waypoints(over, across).back(), Vec3(100, 100, 0));
   EXPECT_GE(covered(over, task->obstacles().get()), 0.9997);
+  const TaskEnds outside{Vec3(-50, 0, 0), {}};
+  EXPECT_EQ(task->order(copter(), outside).status, PlanStatus::invalid_problem);
   const auto open = testing::make_task("cover", "{closed: false, " + std::string(kIslands) + "}");
   EXPECT_LT(open->order(copter(), {}).time_s, around.time_s);
 }

@@ -279,7 +279,7 @@ void take(const Problem& problem, Flown flown, Sweep& best) {
   if (flown.seconds(problem.time) >= best.flown.time_s) {
     return;
   }
-  const Swept swept = finish(problem, flown);
+  Swept swept = finish(problem, flown);
   if (flown.time_s >= best.flown.time_s) {
     return;
   }
@@ -288,6 +288,9 @@ void take(const Problem& problem, Flown flown, Sweep& best) {
     const Segment leg = flown.leg(k);
     const Point2 about[] = {leg.a, leg.b};
     best.needed[k] = swept.lost({&leg, 1}, {}, about, 0) > 0;
+    if (!best.needed[k]) {  // what it shares with another join is that one's now
+      swept.replace({&leg, 1}, {}, about);
+    }
   }
   best.flown = std::move(flown);
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "altiplan/flown_route.hpp"
+#include "support/support.hpp"
+
+namespace altiplan::follow_task_test {
+namespace {
+
+Request copter() {
+  Request request = testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e4, -1e4, 0}, {1e4, 1e4, 500}});
+  request.vehicle.acceleration.mps2 = 2;
+  return request;
+}
+
+/// Distance of a place from the line, seen from above.
+double away(const Vec3& p, const Polyline& line) {
+  double least = kInfinity;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    least = std::min(least, point_leg_distance({p.x(), p.y(), 0}, line[i - 1], line[i]));
+  }
+  return least;
+}
+
+TEST(Follow, KeepsItsDistanceBesideTheLine) {
+  const Polyline line{{0, 0, 0}, {400, 50, 0}, {700, 300, 0}, {500, 900, 0}};
+  const auto task = testing::make_task(
+      "follow",
+      "{line_m: [[0, 0], [400, 50], [700, 300], [500, 900]], offsets_m: [30, -30], height_m: 90}");
+  const TaskOrder order = task->order(copter(), {});
+  ASSERT_EQ(order.passes.size(), 2U);
+  for (const Pass& pass : order.passes) {
+    for (std::size_t i = 1; i < pass.points.size(); ++i) {
+      for (double t = 0; t <= 1; t += 0.01) {
+        const Vec3 p = pass.points[i - 1] + t * (pass.points[i] - pass.points[i - 1]);
+        EXPECT_GE(away(p, line), 30 - 1e-6);
+        EXPECT_LE(away(p, line), 40);  // outside a bend its corner is farther
+        EXPECT_EQ(p.z(), 90);
+      }
+    }
+  }
+  // The second pass comes back: it begins at the end of the line.
+  EXPECT_GT(order.passes[1].points.front().y(), 800);
+  EXPECT_LT(order.passes[1].points.back().y(), 100);
+}
+
+TEST(Follow, RefusesWhatIsNoLine) {
+  EXPECT_NE(testing::parameter_problems("task", "follow", "{height_m: 9}"), "");
+  EXPECT_NE(testing::parameter_problems("task", "follow", "{line_m: [[0, 0]], height_m: 9}"), "");
+  EXPECT_NE(testing::parameter_problems("task", "follow", "{line_m: [[0, 0], [9, 9]]}"), "");
+  EXPECT_THROW(testing::make_task("follow", "{line_m: [[5, 5], [5, 5]], height_m: 9}"), Error);
+  EXPECT_THROW(testing::make_task("follow", "{line_m: [[0, 0], [9, 9]], above_ground_m: 9}"), Error);
+}
+}  // namespace
+}  // namespace altiplan::follow_task_test
