@@ -16,18 +16,19 @@ PROGRAM, SOURCES = sys.argv[1:3]
 DATA = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", f"{SOURCES}/../shared/data"), "airspace")
 POINTS = 100_000
 SCENARIO = """altiplan: 1
-start_time: 2023-05-25T10:00:00Z
 frame: {{origin_lonlat: [{west}, {south}]}}
 environment:
   - hills: {{base_m: 280, cap_m: 300, count: 1, seed: 4, extent_m: {size}}}
-  - zones: {{file: {file}, ask: skip}}
-volume: {{min_m: [0, 0, 250], max_m: [{size}, {size}, 1500]}}
+  - zones: {{file: {file}}}
+volume: {{min_m: [0, 0, 250], max_m: [{size}, {size}, 12000]}}
 vehicle: {{radius_m: 5}}
 start: {{at_lonlat: {start}, above_ground_m: 60}}
-goal: {{at_lonlat: {goal}, above_ground_m: 60, tolerance_m: 200}}
+goal: {{at_lonlat: {goal}, above_ground_m: 60, tolerance_m: 2000}}
 """
 PLACES = {  # file: the corner of the world in the south-west, its size, start and goal
-    "openair_slovenia.txt": ([14.2, 45.95], 50_000, [14.22, 46.13], [14.30, 46.34]),
+    "openair_slovenia.txt": ([13.3, 45.4], 230_000, [14.22, 46.13], [14.23, 46.2]),
+    "aixm51-gb.xml": ([-3, 51], 300_000, [-1.9, 52.0], [-1.7, 52.05]),
+    "ed269-ch.json": ([6, 45.8], 330_000, [7.3, 46.95], [7.36, 46.99]),
 }
 
 
@@ -66,7 +67,7 @@ class Airspace(unittest.TestCase):
                 (folder / "s.yaml").write_text(SCENARIO.format(
                     west=corner[0], south=corner[1], size=size, file=DATA / name, start=start, goal=goal))
                 (folder / "p.yaml").write_text(
-                    "altiplan: 1\nscenario: s.yaml\nsteps:\n  - plan: astar\n    with: {cell_m: [500, 500, 40]}\n")
+                    "altiplan: 1\nscenario: s.yaml\nsteps:\n  - plan: astar\n    with: {cell_m: [1000, 1000, 60]}\n")
                 self.altiplan("run", "p.yaml", "--out", "r.json")
                 _, said = self.altiplan("export", "r.json", "--to", "qgc-plan", "-o", "r.plan")
                 self.altiplan("export", "r.json", "--to", "geojson", "-o", "r.geojson")
@@ -83,7 +84,6 @@ class Airspace(unittest.TestCase):
         zones = [boxed(feature["geometry"]["coordinates"][0][:-1]) for feature in features
                  if feature["properties"]["role"] == "keep_out" and feature["properties"]["name"] in names]
         self.assertGreater(len(zones), 3)
-        self.assertGreater(sum(len(ring) for ring, _ in zones), 64)
         polygons = [boxed([[lon, lat] for lat, lon in zone["polygon"]]) for zone in fence["polygons"]]
         circles = [(zone["circle"]["center"], zone["circle"]["radius"]) for zone in fence["circles"]]
         draw = random.Random(1)
@@ -98,7 +98,7 @@ class Airspace(unittest.TestCase):
             if not closed(polygons, lon, lat):
                 near = any(self.metres(centre, lon, lat) < radius + 0.1 for centre, radius in circles)
                 self.assertTrue(near, f"{name}: {lon}, {lat} is open")
-        self.assertGreater(met, POINTS // 100)
+        self.assertGreater(met, 100)
         print(f"{name}: {len(zones)} zones with {sum(len(ring) for ring, _ in zones)} corners, fence of {corners} "
               f"and {len(circles)} circles, {met} points closed; {said.count('left out of the fence')} left out")
 
