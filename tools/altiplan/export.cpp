@@ -126,6 +126,18 @@ int write_mission(const ExportArguments& arguments) {
   return text ? kDone : kNoRoute;
 }
 
+/// As few items as an autopilot flies as judged, where one is named; else all points.
+std::optional<std::string> text_of_route(const LoadedRoute& route,
+                                         const ExportArguments& arguments) {
+  if (arguments.mission.autopilot) {
+    const std::optional<host::Plan> plan =
+        fewest_plan(route, arguments.route, arguments.mission.plan);
+    return plan ? std::optional(arguments.route.options.format->write_plan(*plan)) : std::nullopt;
+  }
+  const std::optional<host::Exported> written = exported(route, arguments.route);
+  return written ? written->text : std::nullopt;
+}
+
 int export_result(const ExportArguments& arguments) {
   expect_writable(arguments.out, "-o");
   expect_writable(arguments.fence, "--fence");
@@ -133,9 +145,8 @@ int export_result(const ExportArguments& arguments) {
     return write_mission(arguments);
   }
   const std::optional<LoadedRoute> route = loaded(arguments.route, arguments.out);
-  const std::optional<host::Exported> written =
-      route ? exported(*route, arguments.route) : std::nullopt;
-  if (!written) {
+  const std::optional<std::string> text = route ? text_of_route(*route, arguments) : std::nullopt;
+  if (!text) {
     return kNoRoute;
   }
   if (arguments.fence) {
@@ -144,9 +155,9 @@ int export_result(const ExportArguments& arguments) {
     expect_apart(arguments.fence, "--fence", others);
   }
   if (arguments.out) {
-    host::write_file(*arguments.out, *written->text);
+    host::write_file(*arguments.out, *text);
   } else {
-    std::cout << *written->text;
+    std::cout << *text;
   }
   return !arguments.fence || write_fence(*route, *arguments.fence) ? kDone : kNoRoute;
 }
@@ -157,6 +168,11 @@ void add_export(App& app, Action& action) {
     arguments.route.options.format = &format_of(arguments);
     if (is_mission(arguments.mission, arguments.route.result)) {
       expect_no_item_options(arguments.route, arguments.fence.has_value());
+      arguments.mission.plan = checked_plan(arguments.mission, arguments.route.result);
+    } else if (arguments.mission.autopilot) {
+      if (!arguments.route.options.format->has_commands() || arguments.route.flight) {
+        throw UsageError{"--autopilot with a result needs qgc-plan or waypoints, and no --flight"};
+      }
       arguments.mission.plan = checked_plan(arguments.mission, arguments.route.result);
     }
     finish_options(arguments.route);

@@ -10,6 +10,7 @@
 #include "host/base/output_file.hpp"
 #include "host/base/unfinished.hpp"
 #include "host/first_route/first_route.hpp"
+#include "host/gate/fewest_items.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/mission/mission.hpp"
 #include "host/view/scene.hpp"
@@ -160,6 +161,20 @@ bool passes(const std::string& file, const host::FirstRoute& first,
   return report.passed();
 }
 
+/// The plan with fly-by items for turns, if that passes; else with all of their points.
+std::string few_items(const LoadedRoute& loaded, const RouteExport& route,
+                      const host::Exported& written) {
+  const host::FewestItems fewest = busy("searching the fewest items", [&] {
+    return host::fewest_items(loaded.mission, loaded.source, route.options, written.mission, {});
+  });
+  if (!fewest.passed()) {
+    return *written.text;
+  }
+  std::printf("items: %zu, which pass as they are flown, in place of %zu\n",
+              fewest.plan.items.size(), host::plan_of(written.mission).items.size());
+  return host::plan_text(fewest.plan);
+}
+
 /// The page, and the mission; false if the route would not be valid as a mission.
 bool write_views(const fs::path& folder, const GoArguments& arguments) {
   RouteExport route;
@@ -174,9 +189,11 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
     return host::build_scene({host::read_result(route.result, arguments.overrides)});
   });
   host::write_file(folder / "page.html", host::viewer_page(scene.json));
-  const std::optional<host::Exported> plan = exported(route, std::nullopt);
+  const std::optional<LoadedRoute> source = loaded(route, std::nullopt);
+  const std::optional<host::Exported> plan = source ? exported(*source, route) : std::nullopt;
   if (plan) {
-    host::write_file(folder / "route.plan", *plan->text);
+    host::write_file(folder / "route.plan",
+                     is_wing ? few_items(*source, route, *plan) : *plan->text);
   }
   std::printf("written: %s/: page.html, %sresult.json, scenario.yaml, pipeline.yaml\n",
               folder.c_str(), plan ? "route.plan, " : "");

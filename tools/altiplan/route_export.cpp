@@ -5,7 +5,9 @@
 #include <iostream>
 #include <map>
 
+#include "host/autopilot/parameters.hpp"
 #include "host/flight/events.hpp"
+#include "host/gate/fewest_items.hpp"
 #include "host/import_export/plan.hpp"
 #include "progress.hpp"
 
@@ -137,6 +139,47 @@ std::optional<host::Exported> exported(const RouteExport& route,
                                        const std::optional<std::string>& out) {
   const std::optional<LoadedRoute> source = loaded(route, out);
   return source ? exported(*source, route) : std::nullopt;
+}
+
+std::optional<host::Plan> fewest_plan(const LoadedRoute& loaded, const RouteExport& route,
+                                      const PlanCheck& options) {
+  host::ExportOptions all = route.options;
+  all.max_items.reset();
+  // It would fly home where its mission ends.
+  all.circles_at_end = loaded.mission.vehicle_type == host::VehicleType::plane;
+  const host::Exported written = busy("judging the mission", [&] {
+    return host::export_route(loaded.mission, loaded.source, all);
+  });
+  if (!written.text) {
+    for (const std::string& message : written.messages) {
+      say(message);
+    }
+    return std::nullopt;
+  }
+  host::GateOptions gate = options.gate;
+  if (options.parameters) {
+    gate.flight.parameters = host::read_parameters(*options.parameters);
+  }
+  const host::FewestItems fewest = busy("searching the fewest items", [&] {
+    return host::fewest_items(loaded.mission, loaded.source, all, written.mission, gate);
+  });
+  const std::size_t items = fewest.plan.items.size();
+  const std::string how = std::to_string(items) + " items in place of " +
+                          std::to_string(host::plan_of(written.mission).items.size());
+  if (!fewest.passed()) {
+    tell_findings(route.result + ", " + how + ", flown as a plan", {{}, {}, fewest.report, {}});
+    return std::nullopt;
+  }
+  if (route.options.max_items && items > *route.options.max_items) {
+    say("not written: " + std::to_string(items) +
+        " items are the fewest found that pass, more than "
+        "--max-items " +
+        std::to_string(*route.options.max_items));
+    return std::nullopt;
+  }
+  say(how + ": pass as " + fewest.report.autopilots.front().name() + " flies them (" +
+      std::to_string(fewest.judged) + " plans judged)");
+  return fewest.plan;
 }
 
 host::Exported exported_route(const JudgedPlan& judged, const RouteExport& route) {

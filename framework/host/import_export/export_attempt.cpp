@@ -19,33 +19,6 @@ constexpr Decimals kDecimals[] = {{7, 3}, {9, 5}, {13, 8}};
 /// Of points that stand for turns: finer where an obstacle or the ground is too near beside them.
 constexpr double kTolerances[] = {kArcTolerance, kArcTolerance / 5, kArcTolerance / 25};
 
-std::vector<MissionItem> items_of(const std::vector<MissionPlace>& places, const Mission& mission,
-                                  const Placing& place, const ExportOptions& options,
-                                  const std::vector<PlaceTiming>& timing) {
-  std::vector<MissionItem> items;
-  for (const auto& [at, circle] : places) {
-    const auto kind = circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
-    items.push_back({kind, place(at), 0, "", circle});
-  }
-  if (options.takeoff) {
-    if (items.front().circle) {
-      throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
-    }
-    items.front().kind = MissionItem::Kind::takeoff;
-  }
-  if (options.land) {
-    const Vec3 down = landing(mission, {places.back().at}, place);
-    items.push_back({MissionItem::Kind::land, place(down), 0, ""});
-  }
-  if (options.circles_at_end && !items.back().circle) {
-    items.back().kind = MissionItem::Kind::loiter;
-  }
-  for (std::size_t n = 0; n < timing.size(); ++n) {
-    items[n].speed_mps = timing[n].speed_mps;
-  }
-  return items;
-}
-
 /// The request without what a turn satisfies and the legs between its points do not: those have
 /// corners, and are a little longer.
 Request beside_turns(Request request) {
@@ -71,6 +44,34 @@ Request ending_with(Request request, const Route& route) {
   return request;
 }
 }  // namespace
+
+std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& places,
+                                           const Mission& mission, const Placing& place,
+                                           const ExportOptions& options,
+                                           const std::vector<PlaceTiming>& timing) {
+  std::vector<MissionItem> items;
+  for (const auto& [at, circle] : places) {
+    const auto kind = circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
+    items.push_back({kind, place(at), 0, "", circle});
+  }
+  if (options.takeoff) {
+    if (items.front().circle) {
+      throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
+    }
+    items.front().kind = MissionItem::Kind::takeoff;
+  }
+  if (options.land) {
+    const Vec3 down = landing(mission, {places.back().at}, place);
+    items.push_back({MissionItem::Kind::land, place(down), 0, ""});
+  }
+  if (options.circles_at_end && !items.back().circle) {
+    items.back().kind = MissionItem::Kind::loiter;
+  }
+  for (std::size_t n = 0; n < timing.size(); ++n) {
+    items[n].speed_mps = timing[n].speed_mps;
+  }
+  return items;
+}
 
 Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
   Vec3 down = route.back();

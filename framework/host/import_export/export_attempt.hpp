@@ -11,6 +11,12 @@ namespace altiplan::host {
 /// The end point of the landing below the last point.
 Vec3 landing(const Mission& mission, const Route& route, const Placing& place);
 
+/// The items of a mission at the places, with the take-off and landing that the options ask for.
+std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& places,
+                                           const Mission& mission, const Placing& place,
+                                           const ExportOptions& options,
+                                           const std::vector<PlaceTiming>& timing);
+
 /// The first violation of the route as written and read back; "" if it is valid.
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
                        const Request& request);
