@@ -51,8 +51,8 @@ void keeps_budget(const TaskBench& bench, Report& report) {
       continue;
     }
     report.expect(order.time_s <= time_s * (1 + 1e-12), kBudget, [&] {
-      return "within " + std::to_string(iterations) + " iterations it takes " +
-             text(order.time_s) + " s, within fewer " + text(time_s);
+      return "within " + std::to_string(iterations) + " iterations it takes " + text(order.time_s) +
+             " s, within fewer " + text(time_s);
     });
     time_s = order.time_s;
   }
@@ -107,10 +107,10 @@ void pure(const TaskBench& bench, Report& report) {
 Cases task_cases(const TaskFactory& make, const Options& options,
                  const std::shared_ptr<const World>& before) {
   const TaskBench bench(make, options, before);
-  return {make_case("is_clear", kClear, [bench](Report& report) { is_clear(bench, report); }),
-          make_case("keeps_budget", kBudget,
-                    [bench](Report& report) { keeps_budget(bench, report); }),
-          make_case("is_bounded", kBound, [bench](Report& report) { is_bounded(bench, report); }),
-          make_case("same_answers", kTaskPure, [bench](Report& report) { pure(bench, report); })};
+  return {
+      make_case("is_clear", kClear, [bench](Report& report) { is_clear(bench, report); }),
+      make_case("keeps_budget", kBudget, [bench](Report& report) { keeps_budget(bench, report); }),
+      make_case("is_bounded", kBound, [bench](Report& report) { is_bounded(bench, report); }),
+      make_case("same_answers", kTaskPure, [bench](Report& report) { pure(bench, report); })};
 }
 }  // namespace altiplan::conformance

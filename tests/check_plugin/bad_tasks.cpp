@@ -56,8 +56,8 @@ class SpoiltTask final : public Task {
     order.time_s *= kFlaw == Flaw::wrong_time ? 1.001 : 1;
     if (kFlaw == Flaw::bound_too_high) {  // the other way round is faster
       std::swap(order.passes[1], order.passes[0]);
-      order.time_s = order.bound_s = flown_time(
-          Route{{300, 0, 100}, {0, 0, 100}, {300, 400, 100}}, request);
+      order.time_s = order.bound_s =
+          flown_time(Route{{300, 0, 100}, {0, 0, 100}, {300, 400, 100}}, request);
     }
     return order;
   }

@@ -368,7 +368,7 @@ TEST(Structure, OneFileOfTheProgramIncludesCli11) {
 TEST(Structure, EveryPluginFolderIsWhole) {
   const std::vector<PluginFolder> folders = plugin_folders();
   EXPECT_GE(folders.size(), 8u);
-  std::set<std::string> kinds{"environment", "constraint", "planner",  "local_planner",
+  std::set<std::string> kinds{"environment", "constraint", "planner",   "local_planner",
                               "smoother",    "tuner",      "objective", "task"};
   for (const PluginFolder& folder : folders) {
     SCOPED_TRACE(folder.kind + "/" + folder.name);

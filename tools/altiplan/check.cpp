@@ -166,9 +166,10 @@ int check_survey(const CheckArguments& arguments) {
     }
   }
   if (arguments.mission.plan.json) {
-    std::cout << host::file_text({{"surveys", surveys},
-                                  {"items_differ_m", are_equal ? host::Json(differ_m) : host::Json()},
-                                  {"coverage", coverage}});
+    std::cout << host::file_text(
+        {{"surveys", surveys},
+         {"items_differ_m", are_equal ? host::Json(differ_m) : host::Json()},
+         {"coverage", coverage}});
   }
   constexpr double kAsMade = 0.1;  // metres
   return are_equal && differ_m <= kAsMade ? kDone : kNoRoute;
@@ -246,10 +247,10 @@ void add_check(App& app, Action& action) {
     }
   };
   const auto check = [](const CheckArguments& given) {
-    return given.survey   ? check_survey(given)
+    return given.survey     ? check_survey(given)
            : is_plan(given) ? check_plan(given.mission.plan, given.overrides)
-           : given.result ? check_result(given)
-                          : check_route(given);
+           : given.result   ? check_result(given)
+                            : check_route(given);
   };
   auto [command, arguments] = add_command<CheckArguments>(
       app, action, "check", "judge a mission (.plan, .waypoints, …), a result or a route", check,

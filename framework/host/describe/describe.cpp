@@ -12,9 +12,9 @@
 namespace altiplan::host {
 namespace {
 
-constexpr std::array<const char*, 8> kKinds = {"environment", "constraint", "planner",
-                                               "local_planner", "smoother", "tuner",
-                                               "objective", "task"};
+constexpr std::array<const char*, 8> kKinds = {"environment",   "constraint", "planner",
+                                               "local_planner", "smoother",   "tuner",
+                                               "objective",     "task"};
 
 std::string number_text(double number) {
   std::array<char, 32> buffer;

@@ -25,7 +25,7 @@ struct Mission {
   /// What is to be done; until its passes are ordered, start and goal are where the scenario gives
   /// them, or nowhere in particular. Null: nothing.
   std::shared_ptr<const Task> task;
-  TaskEnds ends;  ///< of the task, as far as the scenario gives them
+  TaskEnds ends;                ///< of the task, as far as the scenario gives them
   std::vector<Metric> metrics;  ///< by which routes and tracks are measured
   VehicleType vehicle_type = VehicleType::copter;
   std::vector<std::string> notes;     ///< notes of the layers

@@ -17,9 +17,9 @@
 namespace altiplan::host {
 namespace {
 
-constexpr std::array<std::string_view, 8> kKinds = {"environment", "constraint", "planner",
-                                                    "local_planner", "smoother", "tuner",
-                                                    "objective", "task"};
+constexpr std::array<std::string_view, 8> kKinds = {"environment",   "constraint", "planner",
+                                                    "local_planner", "smoother",   "tuner",
+                                                    "objective",     "task"};
 
 template <std::size_t N>
 bool ends_with_nul(const char (&text)[N]) {

@@ -82,8 +82,7 @@ PlanPart TaskSections::part(PlanPart plan_part) const {
     result.status = PlanStatus::solved;
     result.route = Route(std::move(flown));
     // A pass is flown whatever is in its way: the judge names that.
-    return found->second.is_pass || check(result.route, request).ok() ? result
-                                                                       : plan_part(request);
+    return found->second.is_pass || check(result.route, request).ok() ? result : plan_part(request);
   };
 }
 

@@ -148,7 +148,7 @@ class Run {
   const RunOptions& options_;
   Mission mission_;
   std::optional<TaskSections> task_;  ///< once it is ordered
-  std::mutex mutex_;  ///< guards result_ and caller_ against the watchdog
+  std::mutex mutex_;                  ///< guards result_ and caller_ against the watchdog
   std::string caller_;
   RunResult result_;
   std::map<std::string, std::size_t> left_by_;  ///< index of the step whose route an id refers to

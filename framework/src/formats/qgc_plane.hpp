@@ -111,9 +111,9 @@ class Plane {
 inline double distance(const Place& a, const Place& b) {
   const double dlat = (b.lat - a.lat) * kDegree;
   const double dlon = (b.lon - a.lon) * kDegree;
-  const double h = std::pow(std::sin(dlat / 2), 2) +
-                   std::cos(a.lat * kDegree) * std::cos(b.lat * kDegree) *
-                       std::pow(std::sin(dlon / 2), 2);
+  const double h = std::pow(std::sin(dlat / 2), 2) + std::cos(a.lat * kDegree) *
+                                                         std::cos(b.lat * kDegree) *
+                                                         std::pow(std::sin(dlon / 2), 2);
   return 2 * kStepSphere * std::atan2(std::sqrt(h), std::sqrt(1 - h));
 }
 
@@ -128,9 +128,8 @@ inline Place away(const Place& from, double metres, double azimuth) {
   const double arc = metres / kStepSphere;
   const double lat = std::asin(std::sin(from.lat * kDegree) * std::cos(arc) +
                                std::cos(from.lat * kDegree) * std::sin(arc) * std::cos(azimuth));
-  const double by =
-      std::atan2(std::sin(azimuth) * std::sin(arc) * std::cos(from.lat * kDegree),
-                 std::cos(arc) - std::sin(from.lat * kDegree) * std::sin(lat));
+  const double by = std::atan2(std::sin(azimuth) * std::sin(arc) * std::cos(from.lat * kDegree),
+                               std::cos(arc) - std::sin(from.lat * kDegree) * std::sin(lat));
   return {lat / kDegree, from.lon + by / kDegree};
 }
 }  // namespace altiplan::formats::qgc

@@ -110,8 +110,8 @@ SurveyMatch match_of(const JsonNode& item) {
         survey.starts_once = starts_once;
         SurveyMatch match;
         compare(survey, survey_commands(survey, plane), given, match);
-        const bool is_better = match.problem.empty() &&
-                               (!best.problem.empty() || match.differ_m < best.differ_m);
+        const bool is_better =
+            match.problem.empty() && (!best.problem.empty() || match.differ_m < best.differ_m);
         if (is_first || is_better) {
           match.plane = plane == SurveyPlane::sphere ? "sphere" : "ellipsoid";
           match.coverage = survey_coverage(survey, plane);

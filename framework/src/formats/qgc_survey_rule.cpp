@@ -22,8 +22,8 @@ East turned(const East& p, const East& about, double degrees) {
   return {x * c - y * s + about.x, x * s + y * c + about.y};
 }
 
-/// Where two segments meet, ends included; false where they are parallel or do not. In Qt's order of
-/// operations: whether a line along an edge meets the next ones is a matter of rounding.
+/// Where two segments meet, ends included; false where they are parallel or do not. In Qt's order
+/// of operations: whether a line along an edge meets the next ones is a matter of rounding.
 bool meet(const Line& u, const Line& v, East& at) {
   const East a{u.b.x - u.a.x, u.b.y - u.a.y};
   const East b{v.a.x - v.b.x, v.a.y - v.b.y};
@@ -158,8 +158,7 @@ std::vector<Transect> ordered(const QgcSurvey& survey, std::vector<Transect> lin
 
 /// The lines of one angle, entered, in the order in which they are flown.
 std::vector<Transect> flown_lines(const QgcSurvey& survey, const Plane& plane,
-                                  const std::vector<East>& corners, bool again,
-                                  const Place* last) {
+                                  const std::vector<East>& corners, bool again, const Place* last) {
   const double angle = clamped_angle(survey.angle_deg);
   std::vector<Transect> lines;
   for (const Line& line : lines_of(survey, corners, again ? angle + 90 : angle)) {
@@ -230,9 +229,7 @@ std::vector<SurveyCommand> survey_commands(const QgcSurvey& survey, SurveyPlane 
   const bool has_camera = survey.trigger_m > 0;
   const bool photographs = survey.hovers && has_camera;
   const bool keeps_on = has_camera && survey.triggers_in_turnaround && !survey.hovers;
-  const auto trigger = [&](double metres) {
-    all.push_back({206, 0, 0, double(float(metres))});
-  };
+  const auto trigger = [&](double metres) { all.push_back({206, 0, 0, double(float(metres))}); };
   std::vector<Transect> lines = all_lines(survey, kind);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     Transect& line = lines[i];
@@ -251,8 +248,8 @@ std::vector<SurveyCommand> survey_commands(const QgcSurvey& survey, SurveyPlane 
       fly(line[k], photographs ? 4 : 0);
       if (photographs) {
         all.push_back({2000});
-      } else if (k == 0 && has_camera && !(keeps_on && survey.starts_once &&
-                                           !(is_first && survey.turnaround_m <= 0))) {
+      } else if (k == 0 && has_camera &&
+                 !(keeps_on && survey.starts_once && !(is_first && survey.turnaround_m <= 0))) {
         trigger(survey.trigger_m);
       }
     }

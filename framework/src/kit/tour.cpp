@@ -139,8 +139,7 @@ bool Tour::try_two_opt(int piece) {
       if (out(j) != c) {
         continue;
       }
-      const double gain =
-          old + join(c, in(after(j))) - first - join(in(after(k)), in(after(j)));
+      const double gain = old + join(c, in(after(j))) - first - join(in(after(k)), in(after(j)));
       if (gain > kTourGain) {
         touch(after(k)), touch(j), touch(after(j)), touch(k);
         reverse(after(k), j);

@@ -193,7 +193,10 @@ Point2 turned(const Point2& p, double angle) {
   const double whole = std::round(quarters);
   if (quarters == whole) {
     const int n = ((int(whole) % 4) + 4) % 4;
-    return n == 0 ? p : n == 1 ? Point2(-p.y(), p.x()) : n == 2 ? Point2(-p) : Point2(p.y(), -p.x());
+    return n == 0   ? p
+           : n == 1 ? Point2(-p.y(), p.x())
+           : n == 2 ? Point2(-p)
+                    : Point2(p.y(), -p.x());
   }
   const double c = std::cos(angle);
   const double s = std::sin(angle);

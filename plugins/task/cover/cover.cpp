@@ -65,8 +65,7 @@ class Cover final : public Task {
 
  private:
   static Area area_of(const Params& params) {
-    const std::string problem =
-        formats::polygon_problem({params.outline_m, params.holes_m});
+    const std::string problem = formats::polygon_problem({params.outline_m, params.holes_m});
     if (!problem.empty()) {
       throw ParameterError("outline_m", "the area " + problem);
     }
@@ -205,8 +204,8 @@ class Cover final : public Task {
     Polyline flown;
     for (const Flight& flight : flights) {
       if (flights.size() > 1) {  // all begin where the first does
-        const Vec3 home = ends.start.value_or(
-            Vec3(flight.points[0].x(), flight.points[0].y(), height_m_));
+        const Vec3 home =
+            ends.start.value_or(Vec3(flight.points[0].x(), flight.points[0].y(), height_m_));
         order.passes.push_back({{home}, std::exchange(order.last_join, {}), true});
       }
       const Polyline part = add(flight, ends, order);

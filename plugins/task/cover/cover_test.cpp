@@ -95,8 +95,7 @@ TEST(Cover, BeginsAndEndsWhereItIsAsked) {
 }
 
 TEST(Cover, FlightsKeepTheCapacityAndShareAPlace) {
-  const auto task =
-      testing::make_task("cover", "{capacity_s: 500, " + std::string(kIslands) + "}");
+  const auto task = testing::make_task("cover", "{capacity_s: 500, " + std::string(kIslands) + "}");
   const TaskOrder order = task->order(copter(), {});
   ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
   const Vec3 home = order.passes[0].points[0];

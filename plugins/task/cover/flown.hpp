@@ -42,7 +42,8 @@ struct Flown {
 /// Stops and short legs that cover all of a gap, or if there are none, places in it.
 std::vector<Segment> stops_for(const Problem& problem, const Area& area, const Swept& swept,
                                const std::vector<Point2>& gap);
-/// Inserts stops into joins until no more than `allowed` square metres are uncovered, or none helps.
+/// Inserts stops into joins until no more than `allowed` square metres are uncovered, or none
+/// helps.
 void repair(const Problem& problem, const Area& area, Flown& flown, Swept& swept, double allowed);
 /// Moves, merges and drops waypoints where that saves time and leaves all but `allowed` square
 /// metres covered.

@@ -32,10 +32,10 @@ class Joins {
   Ring2 points_;
   Ring2 corners_;
   std::vector<double> between_corners_;
-  std::vector<int> next_;              ///< corner after the first on the way between two
-  std::vector<double> to_corner_;      ///< by point and corner: along sight; infinite without it
+  std::vector<int> next_;          ///< corner after the first on the way between two
+  std::vector<double> to_corner_;  ///< by point and corner: along sight; infinite without it
   std::vector<double> times_;
-  std::vector<int> last_;              ///< by pair: the last corner; -1: in sight
-  std::vector<int> first_;             ///< by point and corner: the first corner on the way
+  std::vector<int> last_;   ///< by pair: the last corner; -1: in sight
+  std::vector<int> first_;  ///< by point and corner: the first corner on the way
 };
 }  // namespace altiplan::cover

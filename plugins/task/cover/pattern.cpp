@@ -68,9 +68,9 @@ std::vector<double> overlapping_rows(const Problem& problem, const Area& area) {
   const int count = std::max(1, int(std::ceil(height / problem.spacing_m - 1e-9)));
   std::vector<double> rows;
   for (int i = 0; i < count; ++i) {
-    rows.push_back(count == 1 ? low + height / 2
-                              : low + problem.half() +
-                                    i * (height - problem.spacing_m) / (count - 1));
+    rows.push_back(count == 1
+                       ? low + height / 2
+                       : low + problem.half() + i * (height - problem.spacing_m) / (count - 1));
   }
   return rows;
 }
@@ -140,9 +140,8 @@ std::vector<Pattern> patterns(const Problem& problem) {
       }
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Pattern& a, const Pattern& b) {
-    return a.estimate_s < b.estimate_s;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Pattern& a, const Pattern& b) { return a.estimate_s < b.estimate_s; });
   return all;
 }
 }  // namespace altiplan::cover

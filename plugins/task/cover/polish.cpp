@@ -41,10 +41,9 @@ class Polish {
     const Ring2 before = std::exchange(changed_, {});
     const double near = 2 * problem_.spacing_m;
     for (std::size_t i = 1; i + 1 < flown_.points.size(); ++i) {
-      const bool is_near =
-          all || std::any_of(before.begin(), before.end(), [&](const Point2& p) {
-            return (p - at(i)).squaredNorm() < near * near;
-          });
+      const bool is_near = all || std::any_of(before.begin(), before.end(), [&](const Point2& p) {
+                             return (p - at(i)).squaredNorm() < near * near;
+                           });
       if (!is_near) {
         continue;
       }

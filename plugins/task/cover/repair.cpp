@@ -111,8 +111,8 @@ std::vector<Segment> stops_for(const Problem& problem, const Area& area, const S
   const Point2 side(-along.y(), along.x());
   std::vector<Segment> stops;
   const auto offer = [&](const Segment& stop) {
-    const bool covers_all = std::all_of(gap.begin(), gap.end(),
-                                        [&](const Point2& p) { return swept.covers(stop, p); });
+    const bool covers_all =
+        std::all_of(gap.begin(), gap.end(), [&](const Point2& p) { return swept.covers(stop, p); });
     if (covers_all && area.sees(stop.a, stop.b)) {
       stops.push_back(stop);
     }

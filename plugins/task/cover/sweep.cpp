@@ -100,7 +100,8 @@ class Attempt {
     const Point2 start = turned(problem_.start.value_or(problem_.goal.value_or(any)), angle);
     const Point2 goal = turned(problem_.goal.value_or(problem_.start.value_or(any)), angle);
     pieces_.ends = pieces_.lines.size();
-    pieces_.lines.push_back({pieces_.is_goal_free ? any : goal, pieces_.is_start_free ? any : start});
+    pieces_.lines.push_back(
+        {pieces_.is_goal_free ? any : goal, pieces_.is_start_free ? any : start});
   }
 
   /// Seconds of the joins between ends, less what a stop would take where a join covers a gap that
@@ -178,9 +179,8 @@ class Attempt {
   /// The tour's waypoints, from the start on if there is one.
   Flown as_legs(const Joins& joins, std::vector<int> entries) const {
     if (pieces_.ends) {
-      const auto at = std::find_if(entries.begin(), entries.end(), [&](int end) {
-        return std::size_t(end / 2) == *pieces_.ends;
-      });
+      const auto at = std::find_if(entries.begin(), entries.end(),
+                                   [&](int end) { return std::size_t(end / 2) == *pieces_.ends; });
       std::rotate(entries.begin(), at, entries.end());
       if (entries[0] % 2 == 1) {  // entered at the start: it runs backwards
         std::reverse(entries.begin() + 1, entries.end());
@@ -269,7 +269,8 @@ double bound_of(const Problem& problem, const Flown& flown) {
   if (!problem.closed || problem.goal) {
     longest = n == 0 ? 0 : *std::max_element(cost.begin(), cost.end());
   }
-  return std::max(by_area, rows + kit::tour_bound(n / 2, cost, flown.time_s - rows, kSteps) - longest);
+  return std::max(by_area,
+                  rows + kit::tour_bound(n / 2, cost, flown.time_s - rows, kSteps) - longest);
 }
 }  // namespace
 

@@ -44,8 +44,7 @@ Swept::Swept(const Area& area, double half_width, double cell_m)
         const double rise = ring[i].y() - ring[j].y();
         if (std::abs(rise) > cell_) {
           const double y0 = origin_.y() + (row - 1) * cell_;
-          const double x0 =
-              ring[j].x() + (ring[i].x() - ring[j].x()) * (y0 - ring[j].y()) / rise;
+          const double x0 = ring[j].x() + (ring[i].x() - ring[j].x()) * (y0 - ring[j].y()) / rise;
           const double x1 =
               ring[j].x() + (ring[i].x() - ring[j].x()) * (y0 + 3 * cell_ - ring[j].y()) / rise;
           from = std::max(from, std::min(x0, x1));
@@ -189,9 +188,8 @@ std::vector<std::vector<Point2>> Swept::gaps() const {
       }
     }
   }
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return a.size() > b.size();
-  });
+  std::sort(all.begin(), all.end(),
+            [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return all;
 }
 }  // namespace altiplan::cover

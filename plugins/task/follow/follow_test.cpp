@@ -10,7 +10,8 @@ namespace altiplan::follow_task_test {
 namespace {
 
 Request copter() {
-  Request request = testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e4, -1e4, 0}, {1e4, 1e4, 500}});
+  Request request =
+      testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e4, -1e4, 0}, {1e4, 1e4, 500}});
   request.vehicle.acceleration.mps2 = 2;
   return request;
 }
@@ -51,7 +52,8 @@ TEST(Follow, RefusesWhatIsNoLine) {
   EXPECT_NE(testing::parameter_problems("task", "follow", "{line_m: [[0, 0]], height_m: 9}"), "");
   EXPECT_NE(testing::parameter_problems("task", "follow", "{line_m: [[0, 0], [9, 9]]}"), "");
   EXPECT_THROW(testing::make_task("follow", "{line_m: [[5, 5], [5, 5]], height_m: 9}"), Error);
-  EXPECT_THROW(testing::make_task("follow", "{line_m: [[0, 0], [9, 9]], above_ground_m: 9}"), Error);
+  EXPECT_THROW(testing::make_task("follow", "{line_m: [[0, 0], [9, 9]], above_ground_m: 9}"),
+               Error);
 }
 }  // namespace
 }  // namespace altiplan::follow_task_test

@@ -169,9 +169,8 @@ class Visit final : public Task {
       flown.push_back(stops_[i]);
     }
     if (closes && !ends.start) {  // from the first place, wherever it came in the order
-      const auto first = std::find_if(made.passes.begin(), made.passes.end(), [&](const Pass& p) {
-        return p.points[0] == stops_[0];
-      });
+      const auto first = std::find_if(made.passes.begin(), made.passes.end(),
+                                      [&](const Pass& p) { return p.points[0] == stops_[0]; });
       std::rotate(made.passes.begin(), first, made.passes.end());
     }
     if (goal) {
@@ -189,8 +188,8 @@ class Visit final : public Task {
   /// known.
   static double bound_of(double bound_s, const Request& request, double time_s) {
     const Vehicle& vehicle = request.vehicle;
-    const bool adds_up = !vehicle.wing && !vehicle.acceleration.corner_radius_m &&
-                         vehicle.speed_near.empty();
+    const bool adds_up =
+        !vehicle.wing && !vehicle.acceleration.corner_radius_m && vehicle.speed_near.empty();
     return adds_up ? std::min(bound_s, time_s) : 0;
   }
 
@@ -223,10 +222,9 @@ class Visit final : public Task {
       std::reverse(order.begin(), order.end());
     }
     constexpr int kSteps = 200;
-    return {order, kit::tour_bound(pieces, tour_costs(times, [](double a, double b) {
-                                     return std::min(a, b);
-                                   }),
-                                   tour.cost(), kSteps)};
+    return {order, kit::tour_bound(
+                       pieces, tour_costs(times, [](double a, double b) { return std::min(a, b); }),
+                       tour.cost(), kSteps)};
   }
 
   Params params_;

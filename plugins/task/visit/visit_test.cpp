@@ -10,7 +10,8 @@ namespace altiplan::visit_task_test {
 namespace {
 
 Request copter() {
-  Request request = testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e4, -1e4, 0}, {1e4, 1e4, 500}});
+  Request request =
+      testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e4, -1e4, 0}, {1e4, 1e4, 500}});
   request.vehicle.acceleration.mps2 = 2;
   request.vehicle.climb_mps = 2;  // the order depends on the direction
   request.vehicle.sink_mps = 1;

@@ -18,7 +18,7 @@ struct SurveyMatch {
   double differ_m = 0;  ///< greatest distance of a waypoint from the plan's, if they are equal
   double coverage = 0;  ///< share of the area within half a spacing beside the lines
   std::size_t commands = 0;
-  std::string plane;    ///< that fits better: "sphere", of saved plans, or "ellipsoid", from 2026
+  std::string plane;  ///< that fits better: "sphere", of saved plans, or "ellipsoid", from 2026
 };
 
 /// Of each survey of a `.plan`, in order. Throws Error, naming the file and the item, for damaged

@@ -51,5 +51,6 @@ class ALTIPLAN_API Tour {
 
 /// Lower bound of the cost of all closed tours: the greatest 1-tree that Held and Karp's ascent
 /// finds with the pieces as forced edges.
-ALTIPLAN_API double tour_bound(std::size_t pieces, const std::vector<double>& cost, double upper, int steps);
+ALTIPLAN_API double tour_bound(std::size_t pieces, const std::vector<double>& cost, double upper,
+                               int steps);
 }  // namespace altiplan::kit
