@@ -10,8 +10,8 @@
 
 namespace altiplan::cli {
 
-/// How the accepted route is flown: "24.1 min, 41.3 Wh of 64.8 Wh that may be used (battery 90.0 Wh,
-/// reserve 20 %), up to 3.912 km from the start; up to 43.0 degrees down, at 2.2 m/s"; "" where
+/// How the accepted route is flown: "24.1 min, 41.3 Wh of 64.8 Wh that may be used (battery 90.0
+/// Wh, reserve 20 %), up to 3.912 km from the start; up to 43.0 degrees down, at 2.2 m/s"; "" where
 /// nothing is known of the vehicle besides its speed.
 std::string flown_in_words(const host::RunResult& result);
 

@@ -41,8 +41,8 @@ std::optional<host::Exported> exported(const LoadedRoute& loaded, const RouteExp
 /// Both.
 std::optional<host::Exported> exported(const RouteExport& route,
                                        const std::optional<std::string>& out);
-/// The route as the fewest items that pass as they are flown by the autopilot that the options name,
-/// and the scenario's vehicle. None, which is reported: none pass, or not so few.
+/// The route as the fewest items that pass as they are flown by the autopilot that the options
+/// name, and the scenario's vehicle. None, which is reported: none pass, or not so few.
 std::optional<host::Plan> fewest_plan(const LoadedRoute& loaded, const RouteExport& route,
                                       const PlanCheck& options);
 /// The drawn line of a mission that passes, written as a result's route is, without times; reports
