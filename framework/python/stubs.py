@@ -115,7 +115,12 @@ def described(program, name):
                            stdout=subprocess.PIPE, text=True) for more in (["--json"], [])]
     if both[0].returncode != 0:
         return None
-    return json.loads(both[0].stdout), dict(re.findall(r"^  (\w+)(:.*(?:\n {6}.*)*)", both[1].stdout, re.M))
+    about = json.loads(both[0].stdout)
+    if isinstance(about, list):  # other kinds have the name, too
+        about = next(one for one in about if one["kind"] == "planner")
+    text = next((one for one in re.split(r"^(?=\w+ \w+: )", both[1].stdout, flags=re.M)
+                 if one.startswith("planner ")), both[1].stdout)
+    return about, dict(re.findall(r"^  (\w+)(:.*(?:\n {6}.*)*)", text, re.M))
 
 
 def parameter(described_one):

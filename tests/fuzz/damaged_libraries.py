@@ -54,6 +54,15 @@ PARAMETERS = {
     "turn_angle": "{max_deg: 170}",
     "turn_radius": "{min_m: 0.1}",
     "astar": GRID,
+    "cover": "{outline_m: [[0, 0], [100, 0], [100, 100], [0, 100]], spacing_m: 20, height_m: 80}",
+    "visit": "{stops: [{at_m: [20, 80, 80]}, {at_m: [80, 20, 80]}]}",
+    "follow": "{line_m: [[10, 10], [90, 10], [90, 90]], height_m: 80}",
+}
+OBJECTIVES = {
+    "exposure": "{file: risk.asc, elsewhere: 1}",
+    "energy": "{power_w: 180}",
+    "spso": "{threat_weight: 0}",
+    "nmopso": "{threat_weight: 0}",
 }
 CUBE = "".join("v %d %d %d\n" % (40 + 20 * (n & 1), 40 + 20 * (n >> 1 & 1), 40 + 20 * (n >> 2))
                for n in range(8)) + "".join("f %s\n" % face for face in (
@@ -76,14 +85,17 @@ def problem(kind, name):
     with_ = PARAMETERS.get(name, "{}")
     layers = "{%s: %s}" % (name, with_) if kind == "environment" else BALL
     planner = name if kind in ("planner", "local_planner") else "astar"
+    if kind == "objective" and name in ("spso", "nmopso"):
+        planner = "pso"  # of whole routes
     steps = "  - {plan: %s, with: %s, within_s: 5}\n" % (planner, PARAMETERS.get(planner, "{}"))
     if kind == "smoother":
         steps += "  - {smooth: %s}\n" % name
     constraints = "constraints: [{%s: %s}]\n" % (name, with_) if kind == "constraint" else ""
     if kind == "objective":
-        constraints = "objective: {%s: %s}\n" % (name, "{file: risk.asc, elsewhere: 1}" if name == "exposure" else "{}")
+        constraints = "objective: {%s: %s}\n" % (name, OBJECTIVES.get(name, "{}"))
     pipeline = "altiplan: 1\nscenario: scenario.yaml\n" + constraints + "steps:\n" + steps
-    return SCENARIO % layers, pipeline
+    task = "task: {%s: %s}\n" % (name, with_) if kind == "task" else ""
+    return SCENARIO % layers + task, pipeline
 
 
 def damaged(random_, whole):

@@ -95,6 +95,7 @@ class Values(PythonCase):
     def test_as_declared(self):
         self.walk(altiplan.run(self.pipeline, set={"scenario.goal.at_m": SAMPLE_WORLD}))
         self.walk(altiplan.run(self.pipeline, out=self.folder / "r.json"))
+        self.walk(altiplan.run(self.pipeline, set={"scenario.vehicle.energy": {"power_w": 300}}))
         for name in ("ridge_crossing", "wing_ridge", "among_movers"):
             self.walk(altiplan.run(PIPELINES / f"{name}.yaml", set=UNHURRIED))
         self.walk(altiplan.World(self.scenario))

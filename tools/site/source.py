@@ -26,7 +26,7 @@ GROUPS = [
         "install", "view-results", "gallery", "exchange-missions", "flying", "tune-parameters",
         "run-large-studies", "write-a-plugin", "plan-with-the-kit", "debug-a-plugin")]),
     ("Reference", [*(f"docs/reference/{page}.md" for page in (
-        "cli", "files", "objectives", "result", "plugins", "studies", "report", "statistics", "run-outcomes",
+        "cli", "files", "objectives", "performance", "result", "route-formats", "plugins", "studies", "report", "statistics", "run-outcomes",
         "study-database", "check-plugin", "conformance", "abi", "api")), "framework/python/README.md"]),
     ("Interfaces", ["docs/interfaces/README.md", "docs/interfaces/request-and-world.md",
                     *(f"docs/interfaces/{kind}.md" for kind in plugins.KINDS),

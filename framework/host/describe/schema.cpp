@@ -265,7 +265,7 @@ Json file_schema(const char* title, const Json& body, Writer& writer) {
   return schema;
 }
 
-/// A mission may replace the start, and the goal or its position.
+/// A mission may replace the start, and the goal or its position; a task needs neither.
 Json scenario_body(Writer& writer) {
   Json body = writer.object(fields_of<ScenarioFile>());
   Json& required = body["required"];
@@ -275,6 +275,7 @@ Json scenario_body(Writer& writer) {
   Json placed_goal = body["properties"]["goal"];
   body["properties"]["goal"].erase("allOf");
   body["anyOf"] = Json::array({{{"required", Json::array({"mission"})}},
+                               {{"required", Json::array({"task"})}},
                                {{"required", Json::array({"start", "goal"})},
                                 {"properties", {{"goal", std::move(placed_goal)}}}}});
   return body;
@@ -345,6 +346,7 @@ Json any_file_schema(const Choices& choices, const std::vector<FieldSpec>& study
   const Json is_scenario = {{"anyOf", Json::array({{{"required", Json::array({"environment"})}},
                                                    {{"required", Json::array({"start"})}},
                                                    {{"required", Json::array({"goal"})}},
+                                                   {{"required", Json::array({"task"})}},
                                                    {{"required", Json::array({"mission"})}}})}};
   const Json other = {
       {"if", is_scenario}, {"then", scenario_body(writer)}, {"else", pipeline_body(writer)}};

@@ -35,6 +35,7 @@ std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats
   const ReturnHeight height = return_height_of(autopilots.front());
   GateOptions with = options;
   const auto passes = [&](int metres) {
+    with.flight.parameters.erase(height.old_name);
     with.flight.parameters[height.name] = metres;
     return judge_returns(plan, world, with).verdict == Verdict::pass &&
            judge_plan(file, plan, world, with).passed();

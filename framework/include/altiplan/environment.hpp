@@ -44,9 +44,8 @@ struct ALTIPLAN_API Site {
   std::vector<LonLat> about;  ///< positions of a judged mission: lengths are true about them
   Box volume;                 ///< infinite where the scenario leaves it to the layers
   Vehicle vehicle;
-  const World* before =
-      nullptr;                ///< the layers before it, of an objective or a task all; never null
-  std::optional<Vec3> start;  ///< if already known
+  const World* before = nullptr;  ///< the layers before it, of objectives and tasks all; not null
+  std::optional<Vec3> start;      ///< if already known
   std::optional<Vec3> goal;
   double start_time_s = 0;  ///< of the scenario, seconds since 1970-01-01 UTC; 0 where not given
   bool has_start_time = false;

@@ -63,7 +63,7 @@ struct ALTIPLAN_API Vehicle {
   double speed_at(double distance_m) const;
   /// Seconds that a change of height takes at least.
   double climb_time(double rise_m) const {
-    return rise_m > 0 ? rise_m / climb_mps : -rise_m / sink_mps;
+    return rise_m >= 0 ? rise_m / climb_mps : -rise_m / sink_mps;
   }
 };
 

@@ -184,6 +184,39 @@ class Plan(Protocol):
             memory limit: a search ends where it has used it; where memory for the whole lattice
             is taken beforehand, one that needs more is refused"""
     @overload
+    def __call__(self, file: _Path, name: Literal["differential_evolution"], /, start: Any = None,
+                 goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
+                 set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
+                 encoding: Literal["cartesian", "spherical", "spherical_mirrored"] = "cartesian",
+                 waypoints: _Whole = 5, reach: _Number = 0.5, above_ground_m: _Numbers = ...,
+                 evaluations: _Whole = 5000, rule: Literal["judge", "objective"] = "judge",
+                 members: _Whole = 100, factor: _Number = 0.5, crossover: _Number = 0.9,
+                 **others: NoReturn) -> Step:
+        """differential evolution (DE/rand/1/bin) of whole routes, for any objective
+
+        encoding: word, cartesian, spherical, spherical_mirrored, default "cartesian"
+            waypoints by their coordinates (cartesian), or each from the one before by length,
+            climb and heading of the leg (spherical); spherical_mirrored exchanges sine and
+            cosine of the heading, as the published program does
+        waypoints: integer, 1 … 1000, default 5
+            number of waypoints between start and goal
+        reach: number, > 0, ≤ 1e+06, default 0.5
+            cartesian: how far a waypoint may lie to each side of its place on the straight
+            line, in distances of start and goal
+        above_ground_m: 2 numbers [m]
+            least and greatest height of waypoints above ground; default: anywhere in the volume
+        evaluations: integer, 1 … 1e+09, default 5000
+            number of routes that are evaluated, if the budget allows
+        rule: word, judge, objective, default "judge"
+            what makes a route infeasible: the judge's constraints, or only an infinite cost, as
+            in papers, whose routes the judge may then reject
+        members: integer, 4 … 1e+06, default 100
+            size of the population, NP
+        factor: number, > 0, ≤ 2, default 0.5
+            factor of differences, F
+        crossover: number, 0 … 1, default 0.9
+            share of numbers that a trial has of its mutant, CR"""
+    @overload
     def __call__(self, file: _Path, name: Literal["dstar_lite"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
@@ -212,6 +245,72 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit: a search ends where it has used it; where memory for the whole lattice
             is taken beforehand, one that needs more is refused"""
+    @overload
+    def __call__(self, file: _Path, name: Literal["genetic"], /, start: Any = None,
+                 goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
+                 set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
+                 encoding: Literal["cartesian", "spherical", "spherical_mirrored"] = "cartesian",
+                 waypoints: _Whole = 5, reach: _Number = 0.5, above_ground_m: _Numbers = ...,
+                 evaluations: _Whole = 5000, rule: Literal["judge", "objective"] = "judge",
+                 members: _Whole = 100, elite: _Whole = 2, crossover: _Number = 0.9,
+                 crossover_eta: _Number = 15, mutation_eta: _Number = 20,
+                 **others: NoReturn) -> Step:
+        """real-coded genetic algorithm over whole routes, for any objective
+
+        encoding: word, cartesian, spherical, spherical_mirrored, default "cartesian"
+            waypoints by their coordinates (cartesian), or each from the one before by length,
+            climb and heading of the leg (spherical); spherical_mirrored exchanges sine and
+            cosine of the heading, as the published program does
+        waypoints: integer, 1 … 1000, default 5
+            number of waypoints between start and goal
+        reach: number, > 0, ≤ 1e+06, default 0.5
+            cartesian: how far a waypoint may lie to each side of its place on the straight
+            line, in distances of start and goal
+        above_ground_m: 2 numbers [m]
+            least and greatest height of waypoints above ground; default: anywhere in the volume
+        evaluations: integer, 1 … 1e+09, default 5000
+            number of routes that are evaluated, if the budget allows
+        rule: word, judge, objective, default "judge"
+            what makes a route infeasible: the judge's constraints, or only an infinite cost, as
+            in papers, whose routes the judge may then reject
+        members: integer, 2 … 1e+06, default 100
+            size of the population
+        elite: integer, 0 … 1e+06, default 2
+            number of the best that live on unchanged
+        crossover: number, 0 … 1, default 0.9
+            probability that two parents are crossed over
+        crossover_eta: number, 0 … 1000, default 15
+            distribution index of the crossover: the larger, the nearer children are to parents
+        mutation_eta: number, 0 … 1000, default 20
+            distribution index of the mutation, likewise"""
+    @overload
+    def __call__(self, file: _Path, name: Literal["grey_wolf"], /, start: Any = None,
+                 goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
+                 set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
+                 encoding: Literal["cartesian", "spherical", "spherical_mirrored"] = "cartesian",
+                 waypoints: _Whole = 5, reach: _Number = 0.5, above_ground_m: _Numbers = ...,
+                 evaluations: _Whole = 5000, rule: Literal["judge", "objective"] = "judge",
+                 wolves: _Whole = 30, **others: NoReturn) -> Step:
+        """grey wolf optimiser over whole routes, for any objective
+
+        encoding: word, cartesian, spherical, spherical_mirrored, default "cartesian"
+            waypoints by their coordinates (cartesian), or each from the one before by length,
+            climb and heading of the leg (spherical); spherical_mirrored exchanges sine and
+            cosine of the heading, as the published program does
+        waypoints: integer, 1 … 1000, default 5
+            number of waypoints between start and goal
+        reach: number, > 0, ≤ 1e+06, default 0.5
+            cartesian: how far a waypoint may lie to each side of its place on the straight
+            line, in distances of start and goal
+        above_ground_m: 2 numbers [m]
+            least and greatest height of waypoints above ground; default: anywhere in the volume
+        evaluations: integer, 1 … 1e+09, default 5000
+            number of routes that are evaluated, if the budget allows
+        rule: word, judge, objective, default "judge"
+            what makes a route infeasible: the judge's constraints, or only an infinite cost, as
+            in papers, whose routes the judge may then reject
+        wolves: integer, 3 … 1e+06, default 30
+            size of the pack"""
     @overload
     def __call__(self, file: _Path, name: Literal["hybrid_astar"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
@@ -368,6 +467,41 @@ class Plan(Protocol):
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
     @overload
+    def __call__(self, file: _Path, name: Literal["nsga2"], /, start: Any = None, goal: Any = None,
+                 seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
+                 plugin_path: Sequence[_Path] = (), encoding: Literal["cartesian", "spherical",
+                 "spherical_mirrored"] = "cartesian", waypoints: _Whole = 5, reach: _Number = 0.5,
+                 above_ground_m: _Numbers = ..., evaluations: _Whole = 5000, rule: Literal["judge",
+                 "objective"] = "judge", members: _Whole = 100, crossover: _Number = 0.9,
+                 crossover_eta: _Number = 15, mutation_eta: _Number = 20,
+                 **others: NoReturn) -> Step:
+        """NSGA-II: compromises between the terms of an objective, over whole routes
+
+        encoding: word, cartesian, spherical, spherical_mirrored, default "cartesian"
+            waypoints by their coordinates (cartesian), or each from the one before by length,
+            climb and heading of the leg (spherical); spherical_mirrored exchanges sine and
+            cosine of the heading, as the published program does
+        waypoints: integer, 1 … 1000, default 5
+            number of waypoints between start and goal
+        reach: number, > 0, ≤ 1e+06, default 0.5
+            cartesian: how far a waypoint may lie to each side of its place on the straight
+            line, in distances of start and goal
+        above_ground_m: 2 numbers [m]
+            least and greatest height of waypoints above ground; default: anywhere in the volume
+        evaluations: integer, 1 … 1e+09, default 5000
+            number of routes that are evaluated, if the budget allows
+        rule: word, judge, objective, default "judge"
+            what makes a route infeasible: the judge's constraints, or only an infinite cost, as
+            in papers, whose routes the judge may then reject
+        members: integer, 4 … 1e+05, default 100
+            size of the population
+        crossover: number, 0 … 1, default 0.9
+            probability that two parents are crossed over
+        crossover_eta: number, 0 … 1000, default 15
+            distribution index of the crossover: the larger, the nearer children are to parents
+        mutation_eta: number, 0 … 1000, default 20
+            distribution index of the mutation, likewise"""
+    @overload
     def __call__(self, file: _Path, name: Literal["ompl"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), planner: Literal["ABITstar", "AITstar", "BFMT",
@@ -391,6 +525,45 @@ class Plan(Protocol):
         max_iterations: integer, ≥ 1, default 100000
             maximum number of queries by the planner; one that keeps improving its route stops
             there"""
+    @overload
+    def __call__(self, file: _Path, name: Literal["pso"], /, start: Any = None, goal: Any = None,
+                 seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
+                 plugin_path: Sequence[_Path] = (), encoding: Literal["cartesian", "spherical",
+                 "spherical_mirrored"] = "cartesian", waypoints: _Whole = 5, reach: _Number = 0.5,
+                 above_ground_m: _Numbers = ..., evaluations: _Whole = 5000, rule: Literal["judge",
+                 "objective"] = "judge", particles: _Whole = 50, inertia: _Number = 0.7298,
+                 damping: _Number = 1, own_pull: _Number = 1.49618, common_pull: _Number = 1.49618,
+                 max_velocity: _Number = 0.5, **others: NoReturn) -> Step:
+        """particle swarm over whole routes, for any objective
+
+        encoding: word, cartesian, spherical, spherical_mirrored, default "cartesian"
+            waypoints by their coordinates (cartesian), or each from the one before by length,
+            climb and heading of the leg (spherical); spherical_mirrored exchanges sine and
+            cosine of the heading, as the published program does
+        waypoints: integer, 1 … 1000, default 5
+            number of waypoints between start and goal
+        reach: number, > 0, ≤ 1e+06, default 0.5
+            cartesian: how far a waypoint may lie to each side of its place on the straight
+            line, in distances of start and goal
+        above_ground_m: 2 numbers [m]
+            least and greatest height of waypoints above ground; default: anywhere in the volume
+        evaluations: integer, 1 … 1e+09, default 5000
+            number of routes that are evaluated, if the budget allows
+        rule: word, judge, objective, default "judge"
+            what makes a route infeasible: the judge's constraints, or only an infinite cost, as
+            in papers, whose routes the judge may then reject
+        particles: integer, 1 … 1e+06, default 50
+            number of particles, N
+        inertia: number, 0 … 1, default 0.7298
+            fraction of its velocity that a particle keeps, w
+        damping: number, > 0, ≤ 1, default 1
+            factor of the inertia after each iteration
+        own_pull: number, 0 … 4, default 1.49618
+            attraction to the particle's own best position, c1
+        common_pull: number, 0 … 4, default 1.49618
+            attraction to the global best position, c2
+        max_velocity: number, > 0, ≤ 1, default 0.5
+            maximum step on each dimension, as a fraction of its range"""
     @overload
     def __call__(self, file: _Path, name: Literal["rrt"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
@@ -505,6 +678,45 @@ class Plan(Protocol):
             spacing of the planes in cells
         max_memory_mb: integer [MB], 1 … 2147483647, default 4096
             memory limit of the lattice; a larger one is refused before allocation"""
+    @overload
+    def __call__(self, file: _Path, name: Literal["spso"], /, start: Any = None, goal: Any = None,
+                 seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
+                 plugin_path: Sequence[_Path] = (), encoding: Literal["cartesian", "spherical",
+                 "spherical_mirrored"] = "spherical", waypoints: _Whole = 5, reach: _Number = 0.5,
+                 above_ground_m: _Numbers = ..., evaluations: _Whole = 5000, rule: Literal["judge",
+                 "objective"] = "judge", particles: _Whole = 50, inertia: _Number = 1,
+                 damping: _Number = 0.98, own_pull: _Number = 1.5, common_pull: _Number = 1.5,
+                 max_velocity: _Number = 0.5, **others: NoReturn) -> Step:
+        """particle swarm over lengths, climbs and headings of legs (spherical vectors)
+
+        encoding: word, cartesian, spherical, spherical_mirrored, default "spherical"
+            waypoints by their coordinates (cartesian), or each from the one before by length,
+            climb and heading of the leg (spherical); spherical_mirrored exchanges sine and
+            cosine of the heading, as the published program does
+        waypoints: integer, 1 … 1000, default 5
+            number of waypoints between start and goal
+        reach: number, > 0, ≤ 1e+06, default 0.5
+            cartesian: how far a waypoint may lie to each side of its place on the straight
+            line, in distances of start and goal
+        above_ground_m: 2 numbers [m]
+            least and greatest height of waypoints above ground; default: anywhere in the volume
+        evaluations: integer, 1 … 1e+09, default 5000
+            number of routes that are evaluated, if the budget allows
+        rule: word, judge, objective, default "judge"
+            what makes a route infeasible: the judge's constraints, or only an infinite cost, as
+            in papers, whose routes the judge may then reject
+        particles: integer, 1 … 1e+06, default 50
+            number of particles, N
+        inertia: number, 0 … 1, default 1
+            fraction of its velocity that a particle keeps, w
+        damping: number, > 0, ≤ 1, default 0.98
+            factor of the inertia after each iteration
+        own_pull: number, 0 … 4, default 1.5
+            attraction to the particle's own best position, c1
+        common_pull: number, 0 … 4, default 1.5
+            attraction to the global best position, c2
+        max_velocity: number, > 0, ≤ 1, default 0.5
+            maximum step on each dimension, as a fraction of its range"""
     @overload
     def __call__(self, file: _Path, name: Literal["stratified_theta"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
@@ -668,9 +880,10 @@ class Plan(Protocol):
             number of steps after which the pilot gives up"""
     @overload  # type: ignore[misc]
     def __call__(self, file: _Path, name: Literal["ant_colony", "anya", "astar",
-                 "bidirectional_astar", "dstar_lite", "hybrid_astar", "improved_ant_colony",
-                 "informed_rrt_star", "jps", "lazy_theta_star", "ompl", "rrt", "rrt_connect",
-                 "rrt_star", "sipp", "spatial_slicing", "stratified_theta", "theta_star", "apf",
+                 "bidirectional_astar", "differential_evolution", "dstar_lite", "genetic",
+                 "grey_wolf", "hybrid_astar", "improved_ant_colony", "informed_rrt_star", "jps",
+                 "lazy_theta_star", "nsga2", "ompl", "pso", "rrt", "rrt_connect", "rrt_star",
+                 "sipp", "spatial_slicing", "spso", "stratified_theta", "theta_star", "apf",
                  "velocity_field"], /, start: Any = None, goal: Any = None, seed: int = 0,
                  within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), **parameters: Any) -> RefusedParameters: ...

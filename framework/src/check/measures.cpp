@@ -148,29 +148,20 @@ double box_distance(const Environment& layer, const Route& route) {
   return distance;
 }
 
-/// The layers that may be nearest, by their minimum clearance from a waypoint: where a near one is
-/// measured first, one query a leg shows that the others are further away.
+/// The layers by their minimum clearance from a waypoint: where a near one is measured first, one
+/// query a leg shows that the others are further away.
 std::vector<std::pair<double, const Environment*>> nearest_first(const World& world,
                                                                  const Route& route) {
-  constexpr double kRounding = 1e-6;
   std::vector<std::pair<double, const Environment*>> layers;
   for (const Layer& layer : world.layers()) {
-    layers.emplace_back(box_distance(*layer.environment, route), layer.environment.get());
-  }
-  const auto is_nearer = [](const auto& a, const auto& b) { return a.first < b.first; };
-  std::stable_sort(layers.begin(), layers.end(), is_nearer);
-  double nearest = kInfinity;
-  std::size_t count = 0;
-  for (; count < layers.size() && layers[count].first <= nearest + kRounding; ++count) {
-    double& clearance = layers[count].first;
-    clearance = kInfinity;
+    double min_clearance = kInfinity;
     for (std::size_t i = 0; i < route.size(); ++i) {
-      clearance = std::min(clearance, layers[count].second->clearance(route[i]));
+      min_clearance = std::min(min_clearance, layer.environment->clearance(route[i]));
     }
-    nearest = std::min(nearest, std::max(clearance, 0.0));
+    layers.emplace_back(min_clearance, layer.environment.get());
   }
-  layers.resize(count);
-  std::stable_sort(layers.begin(), layers.end(), is_nearer);
+  std::stable_sort(layers.begin(), layers.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   return layers;
 }
 }  // namespace
@@ -197,6 +188,9 @@ Measures measure(const Route& route, const Request& request) {
   }
   double clearance = kInfinity;
   for (const auto& [min_clearance, layer] : nearest_first(world, legs)) {
+    if (box_distance(*layer, legs) > clearance) {
+      continue;
+    }
     if (const auto nearest = nearest_leg(*layer, points, clearance)) {
       clearance = nearest->distance;
     }
