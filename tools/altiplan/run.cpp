@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 
 #include "commands.hpp"
@@ -55,7 +56,8 @@ std::vector<Table::Cell> costs_of(const host::RunResult& result, const host::Ste
   if (!step.cost) {
     return {"-", "-"};
   }
-  return {host::with_digits(step.cost->cost, 6), fixed(100 * step.cost->gap(), 2)};
+  const double gap = step.cost->gap();  // infinite where no bound is known
+  return {host::with_digits(step.cost->cost, 6), std::isfinite(gap) ? fixed(100 * gap, 2) : "-"};
 }
 
 /// The time budget of the step with this id, if it has no other budget that could end it.

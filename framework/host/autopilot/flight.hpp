@@ -22,6 +22,9 @@ struct Destination {
   Vec3 point() const { return {at.x(), at.y(), low}; }
 };
 
+/// How a VTOL slows down on wings, m/s²: VT_B_DEC_MSS, Q_TRANS_DECEL.
+inline constexpr double kVtolBrakes = 2;
+
 /// A flight as far as it is known.
 class Flight {
  public:

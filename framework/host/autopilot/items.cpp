@@ -128,7 +128,6 @@ void Walker::fly_wing_to(std::size_t n, const char* what, const Destination& to,
 }
 
 bool Walker::fly_wing(std::size_t n) {
-  constexpr double kBrakes = 2;  // m/s²: VT_B_DEC_MSS, Q_TRANS_DECEL
   const Task task = task_of(n);
   Destination to = destination(n);
   const bool lands = task == Task::land || task == Task::vtol_land || task == Task::payload_place;
@@ -141,14 +140,14 @@ bool Walker::fly_wing(std::size_t n) {
     to.above_ground.reset();
     const Eigen::Vector2d track = (to.at - wing_->mean_place()).normalized();
     const double v = wing_->speed_mps[1] + flight_.wind_mps;
-    if (!is_px4() && (to.at - wing_->mean_place()).norm() < v * v / (2 * kBrakes)) {
+    if (!is_px4() && (to.at - wing_->mean_place()).norm() < v * v / (2 * kVtolBrakes)) {
       flight_.remark(Weight::not_judged, "not_judged", n,
                      "lies nearer than it can slow down on wings: how it gets here is not judged");
     }
     fly_wing_to(n, "", to, true);
     if (is_px4()) {  // it may drift beyond while it slows down
       constexpr double kReach = 8;
-      const Eigen::Vector2d beyond = to.at + v * v / (2 * kBrakes) * track;
+      const Eigen::Vector2d beyond = to.at + v * v / (2 * kVtolBrakes) * track;
       flight_.begin(n, "the change to hover");
       flight_.add_strip({to.at.x(), to.at.y(), to.low}, to.high, {beyond.x(), beyond.y(), to.low},
                         to.high, kReach);

@@ -115,7 +115,6 @@ class UploadCheck {
 
   /// QuadPlanes do not arm with a landing so near to the waypoint before it.
   void check_braking(std::size_t n) {
-    constexpr double kBrakes = 2;  // m/s²: Q_TRANS_DECEL
     const Task task = commands_.task_of(n).task;
     if (is_px4() || autopilot_.airframe != formats::Airframe::vtol || n == 0 ||
         (task != Task::vtol_land && task != Task::land) ||
@@ -123,7 +122,7 @@ class UploadCheck {
       return;
     }
     const double v = flight_.parameter("AIRSPEED_CRUISE");
-    const double limit = 0.75 * v * v / (2 * kBrakes);
+    const double limit = 0.75 * v * v / (2 * kVtolBrakes);
     const double distance = distance_between(n - 1, n);
     if (distance < limit) {
       flight_.remark(Weight::fails, "arming", n,

@@ -264,7 +264,7 @@ void AeroplaneEntry::describe(Fields& f) {
   f("wing_m2", wing_m2).unit("m2").greater_than(0).required().doc("area of the wing");
   f("cd0", cd0).greater_than(0).required().doc("least drag coefficient");
   f("k", k).greater_than(0).required().doc("drag coefficient by the square of the lift's");
-  f("cl_min_drag", cl_min_drag).range(-2, 2).doc("lift coefficient of the least drag");
+  f("cl_min_drag", cl_of_least_drag).range(-2, 2).doc("lift coefficient of the least drag");
   f("cl_max", cl_max).range(0.1, 5).doc("lift coefficient at which it stalls");
   describe_efficiency(f, efficiency, "of propeller, motor and controller together");
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/params.hpp"
+#include "host/energy/flight_power.hpp"
 
 namespace altiplan::host {
 
@@ -152,31 +153,21 @@ struct BodyEntry {
   void describe(Fields& f);
 };
 
-/// A multirotor's power by the terms of Liu, Sengupta and Kurek 2017.
-struct LiuEntry {
-  double mass_kg = 0;
-  double k1 = 0.8554;
-  double k2 = 0.3051;
-  double c1 = 2.8037;
-  double c2 = 0.3177;
-  double c4 = 0.0296;
-  double c5 = 0.0279;
-  double tilt_deg = 10;
+// The models of power that a file may name, with what it may say of them.
+
+struct LiuEntry : LiuPower {
   void describe(Fields& f);
 };
 
-/// The same by momentum theory.
-struct RotorsEntry {
-  double mass_kg = 0;
-  double disc_m2 = 0;
-  double drag_m2 = 0;
-  double induced = 1.15;
-  double efficiency = 0.6;
-  double profile_w = 0;
+struct RotorsEntry : MomentumPower {
+  RotorsEntry() {  // of small rotors
+    induced = 1.15;
+    efficiency = 0.6;
+  }
   void describe(Fields& f);
 };
 
-/// The same as measured in hover, and perhaps at a speed.
+/// As measured in hover, and perhaps at a speed.
 struct HoverEntry {
   double power_w = 0;
   std::optional<double> cruise_w;
@@ -186,15 +177,11 @@ struct HoverEntry {
   void describe(Fields& f);
 };
 
-/// An aeroplane's power by its drag polar.
-struct AeroplaneEntry {
-  double mass_kg = 0;
-  double wing_m2 = 0;
-  double cd0 = 0;
-  double k = 0;
-  double cl_min_drag = 0;
-  double cl_max = 1.2;
-  double efficiency = 0.5;
+struct AeroplaneEntry : PolarPower {
+  AeroplaneEntry() {
+    efficiency = 0.5;
+    cl_max = 1.2;
+  }
   void describe(Fields& f);
 };
 

@@ -16,7 +16,7 @@ double air_density(double height_m);
 /// A multirotor's power by Liu, Sengupta and Kurek 2017 (ICUAS, "A power consumption model for
 /// multi-rotor small unmanned aircraft systems"); the coefficients are their IRIS+'s, of about
 /// 1.5 kg, and hold below 15 m/s. What a climb takes is added to level flight.
-struct LiuPower final : Power {
+struct LiuPower : Power {
   double mass_kg = 1.5;
   double k1 = 0.8554;
   double k2 = 0.3051;  ///< (kg/m)^0.5
@@ -33,7 +33,7 @@ struct LiuPower final : Power {
 
 /// A multirotor's power by momentum theory (Glauert): induced by all discs together, by drag, by
 /// the climb, and of the profile.
-struct MomentumPower final : Power {
+struct MomentumPower : Power {
   double mass_kg = 0;
   double disc_m2 = 0;     ///< of all rotors
   double drag_m2 = 0;     ///< coefficient times area
@@ -48,7 +48,7 @@ struct MomentumPower final : Power {
 };
 
 /// An aeroplane's, of a parabolic drag polar: CD = CD0 + k (CL - CLm)².
-struct PolarPower final : Power {
+struct PolarPower : Power {
   double mass_kg = 0;
   double wing_m2 = 0;
   double cd0 = 0;

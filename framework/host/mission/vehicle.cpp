@@ -107,38 +107,14 @@ std::shared_ptr<const Body> body_of(const BodyEntry& entry, const Value& where,
 }
 
 std::shared_ptr<const Power> power_of(const EnergyEntry& entry) {
-  if (const auto& liu = entry.multirotor) {
-    LiuPower power;
-    power.mass_kg = liu->mass_kg;
-    power.k1 = liu->k1;
-    power.k2 = liu->k2;
-    power.c1 = liu->c1;
-    power.c2 = liu->c2;
-    power.c4 = liu->c4;
-    power.c5 = liu->c5;
-    power.tilt_deg = liu->tilt_deg;
-    return std::make_shared<LiuPower>(power);
+  if (entry.multirotor) {
+    return std::make_shared<LiuPower>(*entry.multirotor);
   }
-  if (const auto& rotors = entry.rotors) {
-    MomentumPower power;
-    power.mass_kg = rotors->mass_kg;
-    power.disc_m2 = rotors->disc_m2;
-    power.drag_m2 = rotors->drag_m2;
-    power.induced = rotors->induced;
-    power.efficiency = rotors->efficiency;
-    power.profile_w = rotors->profile_w;
-    return std::make_shared<MomentumPower>(power);
+  if (entry.rotors) {
+    return std::make_shared<MomentumPower>(*entry.rotors);
   }
-  if (const auto& wing = entry.aeroplane) {
-    PolarPower power;
-    power.mass_kg = wing->mass_kg;
-    power.wing_m2 = wing->wing_m2;
-    power.cd0 = wing->cd0;
-    power.k = wing->k;
-    power.cl_of_least_drag = wing->cl_min_drag;
-    power.efficiency = wing->efficiency;
-    power.cl_max = wing->cl_max;
-    return std::make_shared<PolarPower>(power);
+  if (entry.aeroplane) {
+    return std::make_shared<PolarPower>(*entry.aeroplane);
   }
   if (entry.power_w) {
     MeanPower power;

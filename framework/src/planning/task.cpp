@@ -3,6 +3,7 @@
 
 #include "altiplan/attributed.hpp"
 #include "altiplan/environment.hpp"
+#include "altiplan/request.hpp"
 
 namespace altiplan {
 namespace {
@@ -24,7 +25,13 @@ Task::~Task() = default;
 std::shared_ptr<const Environment> Task::do_obstacles() const { return nullptr; }
 
 TaskOrder Task::order(const Request& request, const TaskEnds& ends) const {
-  TaskOrder order =
+  TaskOrder order;
+  if (BudgetWatch watch(request.budget); watch.spent(0)) {
+    order.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
+    order.message = "the budget ended before the first order";
+    return order;
+  }
+  order =
       attributed([] { return std::string("the task"); }, [&] { return do_order(request, ends); });
   if ((order.status == PlanStatus::solved) == order.passes.empty()) {
     fail_contract(order.passes.empty() ? "it is solved without a pass"

@@ -67,7 +67,8 @@ class Cover final : public Task {
   static Area area_of(const Params& params) {
     const std::string problem = formats::polygon_problem({params.outline_m, params.holes_m});
     if (!problem.empty()) {
-      throw ParameterError("outline_m", "the area " + problem);
+      const bool is_outline = !formats::polygon_problem({params.outline_m, {}}).empty();
+      throw ParameterError(is_outline ? "outline_m" : "holes_m", "the area: " + problem);
     }
     std::vector<Ring2> islands;
     for (const formats::Ring& hole : params.holes_m) {

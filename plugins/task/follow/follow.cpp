@@ -169,12 +169,6 @@ class Follow final : public Task {
   /// Passes in their order, each from the end that is nearer; the first from the start's side.
   TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
     TaskOrder order;
-    BudgetWatch watch(request.budget);
-    if (watch.spent(0)) {
-      order.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
-      order.message = "the budget ended before the first order";
-      return order;
-    }
     Polyline flown;
     std::optional<Vec3> here = ends.start;
     if (here) {

@@ -141,11 +141,6 @@ class Visit final : public Task {
   TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
     TaskOrder made;
     BudgetWatch watch(request.budget);
-    if (watch.spent(0)) {
-      made.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
-      made.message = "the budget ended before the first order";
-      return made;
-    }
     // A closed route without a start may begin at any of its places: at the first.
     const bool closes = params_.closed && !ends.goal;
     const auto start = ends.start ? ends.start : closes ? std::optional(stops_[0]) : std::nullopt;
