@@ -188,7 +188,8 @@ Measures measure(const Route& route, const Request& request) {
   }
   double clearance = kInfinity;
   for (const auto& [min_clearance, layer] : nearest_first(world, legs)) {
-    if (box_distance(*layer, legs) > clearance) {
+    // Inside of one layer another may still be deeper.
+    if (box_distance(*layer, legs) > std::max(clearance, 0.0)) {
       continue;
     }
     if (const auto nearest = nearest_leg(*layer, points, clearance)) {
