@@ -76,7 +76,7 @@ class Go(unittest.TestCase):
     def test_a_copter(self):
         for folder in ("jacksboro_fault", "jacksboro_fault_2"):  # none is overwritten
             out = self.go("--terrain", TERRAIN, *ENDS, folder=folder)
-            self.assertIn("planner: astar", out)
+            self.assertIn("planner: theta_star", out)
             self.call("check", f"{folder}/route.plan", "--terrain", TERRAIN, "--min-agl", "50")
         _, err = self.call("go", "--terrain", TERRAIN, *ENDS, "-o", "jacksboro_fault", code=3)
         self.assertIn("exists already", err)
@@ -102,6 +102,22 @@ class Go(unittest.TestCase):
         self.go("--terrain", TERRAIN, *ENDS, "--max-agl", "120", "-o", "low", folder="low")
         self.call("check", "low/route.plan", "--terrain", TERRAIN, "--min-agl", "50", "--max-agl",
                   "120")
+
+    def test_no_planner_is_much_shorter_within_a_band(self):
+        steep = DATA / "dem/elev_vinschgau.tif"
+        pairs = [(TERRAIN, "-84.31,36.48", "-84.136,36.70")]
+        if steep.is_file():
+            pairs.append((str(steep), "10.73,46.55", "10.75,46.78"))
+        for terrain, start, goal in pairs:
+            def length(*options):
+                folder = f"{len(list(self.folder.iterdir()))}"
+                self.call("go", "--terrain", terrain, "--from", start, "--to", goal, "--max-agl",
+                          "120", "-o", folder, *options)
+                result = json.loads((self.folder / folder / "result.json").read_text())
+                return result["metrics"]["length_m"]
+            chosen = length()
+            for planner in ("astar", "lazy_theta_star"):
+                self.assertLess(chosen, 1.01 * length("--planner", planner), (terrain, planner))
 
     def test_a_flight_may_be_off_by_what_its_route_keeps(self):
         self.go("--terrain", TERRAIN, *ENDS, "--max-agl", "120", "-o", "first", folder="first")
@@ -170,6 +186,9 @@ class Go(unittest.TestCase):
                 (["--min-agl", "50", "--max-agl", "52"], "reason: --max-agl: without a limit above")):
             out, _ = self.call("go", "--terrain", TERRAIN, *ENDS, *options, code=1)
             self.assertIn(said, out)
+        out, _ = self.call("go", "--terrain", TERRAIN, "--from", "-84.31,36.48", "--to",
+                           "-84.136,36.70", "--max-agl", "120", "--planner", "rrt_star", code=1)
+        self.assertIn("reason: --planner rrt_star: without it a route of ", out)
         self.assertEqual(sorted(file.name for file in (self.folder / "jacksboro_fault").iterdir()),
                          ["pipeline.yaml", "result.json", "scenario.yaml"])
 

@@ -238,6 +238,10 @@ class Page(EditCase):
         self.await_(lambda: len(self.state()["pipelines"]) == 2)
         self.await_(lambda: len(self.driver.find_elements(By.CSS_SELECTOR, "#edit h3")) == 2)
         self.still()
+        # The plugins' names come after the page.
+        self.await_(lambda: len(self.driver.find_elements(
+            By.CSS_SELECTOR,
+            "[aria-label='A further constraint'] option[value=climb_angle]")) == 2)
         choices = self.driver.find_elements(By.CSS_SELECTOR, "[aria-label='A further constraint']")
         Select(choices[1]).select_by_value("climb_angle")
         form = choices[1].find_element(By.XPATH, "..")

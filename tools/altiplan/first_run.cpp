@@ -109,25 +109,35 @@ std::vector<std::string> reasons_of(const FailedTry& failed, Interrupt& interrup
   const host::Mission mission =
       host::build_mission(host::load_config(failed.folder / "pipeline.yaml", failed.overrides), 1);
   std::vector<std::string> reasons = ends_in_zones(mission);
-  if (!failed.wish.avoid.empty() && reasons.empty()) {
-    host::RouteWish wish = failed.wish;
-    wish.avoid.clear();
-    const Polyline route = route_of(failed, wish, interrupt);
-    if (!route.empty()) {
-      const std::vector<std::string> names = zones_entered(mission.truth, route);
-      reasons.push_back("the zones close every way: without them a route of " + kilometres(route) +
-                        " is found" + (names.empty() ? "" : ", which enters " + listed(names)));
+  // The first thing to give up that a route is found without; empty where it is not tried.
+  const auto found_without = [&](bool is_given, const auto& give_up) {
+    if (!is_given || !reasons.empty() || interrupt.happened()) {
+      return Polyline{};
     }
+    host::RouteWish wish = failed.wish;
+    give_up(wish);
+    return route_of(failed, wish, interrupt);
+  };
+  Polyline route = found_without(failed.wish.planner.has_value(),
+                                 [](host::RouteWish& wish) { wish.planner.reset(); });
+  if (!route.empty()) {
+    reasons.push_back("--planner " + *failed.wish.planner + ": without it a route of " +
+                      kilometres(route) + " is found within the same limits");
   }
-  if (failed.wish.max_above_ground_m && reasons.empty() && !interrupt.happened()) {
-    host::RouteWish wish = failed.wish;
+  route =
+      found_without(!failed.wish.avoid.empty(), [](host::RouteWish& wish) { wish.avoid.clear(); });
+  if (!route.empty()) {
+    const std::vector<std::string> names = zones_entered(mission.truth, route);
+    reasons.push_back("the zones close every way: without them a route of " + kilometres(route) +
+                      " is found" + (names.empty() ? "" : ", which enters " + listed(names)));
+  }
+  route = found_without(failed.wish.max_above_ground_m.has_value(), [](host::RouteWish& wish) {
+    wish.min_above_ground_m = host::heights_of(wish).min_m;
     wish.max_above_ground_m.reset();
-    wish.min_above_ground_m = host::heights_of(failed.wish).min_m;
-    const Polyline route = route_of(failed, wish, interrupt);
-    if (!route.empty()) {
-      reasons.push_back("--max-agl: without a limit above a route of " + kilometres(route) +
-                        " is found: raise it");
-    }
+  });
+  if (!route.empty()) {
+    reasons.push_back("--max-agl: without a limit above a route of " + kilometres(route) +
+                      " is found: raise it");
   }
   return reasons;
 }

@@ -30,14 +30,17 @@ struct Cells {
 double extent(const Box& volume) { return (volume.max - volume.min).head<2>().maxCoeff(); }
 
 /// In open space a search is quick on cells of a 160th of the volume. Within a band above ground,
-/// cells must be smaller than what the ground rises by, and half as high as the band.
+/// they are a quarter of the band high, and not so wide that ground of 45 degrees leaves it between
+/// two of them.
 Cells cells_of(const WishedHeights& heights, const SearchSpace& space) {
   constexpr double kMaxCells = 8e7;  // of 25 bytes, of which a search touches few
   const Vec3 size = space.volume.max - space.volume.min;
   Cells cells;
   if (heights.max_m) {
-    cells.high = std::max(2.0, (*heights.max_m - heights.min_m) / 2 / space.fineness);
-    cells.across = std::max({extent(space.volume) / 600, space.spacing_m, 5.0}) / space.fineness;
+    const double band = *heights.max_m - heights.min_m;
+    cells.high = std::max(2.0, band / 4) / space.fineness;
+    cells.across = std::max({extent(space.volume) / 600, std::min(space.spacing_m, band), 5.0}) /
+                   space.fineness;
   } else {
     cells.high = simple(std::clamp(size.z() / 40, 5.0, 50.0) / space.fineness);
     cells.across = std::max(extent(space.volume) / 160, 5.0) / space.fineness;
@@ -95,15 +98,11 @@ Search choose_search(const RouteWish& wish, const WishedHeights& heights, const 
   if (wish.turn_radius_m) {
     return wing_search(wish, heights, space);
   }
-  const std::string planner = wish.planner.value_or("astar");
+  const std::string planner = wish.planner.value_or("theta_star");
   const Cells cells = cells_of(heights, space);
-  const bool has_cells = takes_cells(planner, registry);
   Search search{"  - plan: " + planner + "\n", planner};
-  if (has_cells) {
-    // Within a band the first route found is smoothed; the shortest takes far longer.
-    const bool is_hasty = heights.max_m && planner == "astar";
-    search.steps += "    with: {cell_m: " + list_of(cells) +
-                    (is_hasty ? ", weight_g: 0.4, weight_h: 0.6" : "") + "}\n";
+  if (takes_cells(planner, registry)) {
+    search.steps += "    with: {cell_m: " + list_of(cells) + "}\n";
     search.words += ", cell_m: " + list_of(cells);
   }
   if (!heights.max_m) {
@@ -112,11 +111,11 @@ Search choose_search(const RouteWish& wish, const WishedHeights& heights, const 
     return search;
   }
   // prune looks at all pairs of waypoints, terrain_follow at all stations.
-  const bool is_short = space.length_m / cells.across < 350;
-  search.steps += is_short ? "  - smooth: prune\n" : "";
+  const bool is_pruned = wish.planner && space.length_m / cells.across < 350;
+  search.steps += is_pruned ? "  - smooth: prune\n" : "";
   search.steps += "  - smooth: terrain_follow\n    with: {station_m: " +
                   number(simple(std::max(space.length_m / 1000, 25.0))) + ", height_step_m: 2}\n";
-  search.words += std::string(", then ") + (is_short ? "prune and " : "") + "terrain_follow";
+  search.words += std::string(", then ") + (is_pruned ? "prune and " : "") + "terrain_follow";
   return search;
 }
 }  // namespace altiplan::host
