@@ -15,6 +15,9 @@ constexpr const char* kAdditive =
 constexpr const char* kConsistent =
     "Objective contract 3: bound is consistent: bound(a, a) = 0 and bound(a, c) <= cost(a-b) + "
     "bound(b, c)";
+constexpr const char* kOfRoutes =
+    "Objective contract 5: without the trait `waypoints` costs add up to at least the sum of cost "
+    "over the legs; min_cost is at most the costs of any route";
 constexpr const char* kDenied = "Objective contract 4: cost depends on nothing that traits denies";
 
 /// Rounding of an integral over many pieces, and what chords of a turn are off by.
@@ -69,6 +72,40 @@ void consistent(const ObjectiveBench& bench, Report& report) {
   }
 }
 
+void whole_routes(const ObjectiveBench& bench, Report& report) {
+  constexpr int kLegs = 3;
+  const auto objective = bench.made();
+  RandomStream random = bench.stream("routes");
+  for (int n = 0; n < bench.count() / kLegs; ++n) {
+    Polyline points{bench.place(random)};
+    while (points.size() <= kLegs) {
+      points.push_back(n % 2 == 0 ? bench.place(random) : bench.beside(points.back(), random));
+    }
+    const Route route(points);
+    const double whole = objective->cost(route, bench.request);
+    double legs = 0;
+    double time_s = 0;
+    for (std::size_t i = 0; i < route.leg_count(); ++i) {
+      legs += objective->cost(route.leg(i), time_s, bench.request);
+      time_s += leg_duration(route.leg(i), bench.request);
+    }
+    if (!objective->traits().waypoints) {
+      report.expect(legs <= whole * (1 + kOfStraight), kOfRoutes, [&] {
+        return "the route from " + text(points.front()) + " to " + text(points.back()) + " costs " +
+               text(whole) + ", its legs alone " + text(legs);
+      });
+    }
+    Request ends = bench.request;
+    ends.start.position = points.front();
+    ends.goal.position = points.back();
+    const double least = objective->min_cost(ends);
+    report.expect(least <= whole * (1 + kOfStraight), kOfRoutes, [&] {
+      return "a route from " + text(points.front()) + " to " + text(points.back()) + " costs " +
+             text(whole) + ", min_cost is " + text(least);
+    });
+  }
+}
+
 void traits_hold(const ObjectiveBench& bench, Report& report) {
   const auto objective = bench.made();
   const Objective::Traits traits = objective->traits();
@@ -118,6 +155,8 @@ Cases objective_cases(const ObjectiveFactory& make, const Options& options,
                 [bench](Report& report) { additive(bench, report); }),
       make_case("bounds_are_consistent", kConsistent,
                 [bench](Report& report) { consistent(bench, report); }),
+      make_case("routes_cost_their_legs", kOfRoutes,
+                [bench](Report& report) { whole_routes(bench, report); }),
       make_case("traits_hold", kDenied, [bench](Report& report) { traits_hold(bench, report); }),
       make_case("same_answers", kObjectivePure, [bench](Report& report) { pure(bench, report); })};
 }

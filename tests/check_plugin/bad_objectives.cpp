@@ -17,6 +17,8 @@ enum class Flaw {
   by_place,
   by_heading,
   by_time,
+  flat,
+  dear,
   counts
 };
 
@@ -66,6 +68,14 @@ class SpoiltObjective final : public Objective {
         return length;
     }
   }
+  std::vector<double> do_costs(const Route& route, const Request& request) const override {
+    return {kFlaw == Flaw::flat ? (route[route.size() - 1] - route[0]).norm()
+                                : legs_cost(route, request)};
+  }
+  double do_min_cost(const Request& request) const override {
+    const double bound = Objective::bound(request.start.position, request.goal.position, request);
+    return kFlaw == Flaw::dear ? 2 * bound : bound;
+  }
   std::string do_unit() const override { return "m"; }
   Traits do_traits() const override { return {.place = kFlaw == Flaw::mean}; }
 };
@@ -92,6 +102,10 @@ ALTIPLAN_PLUGIN(Objective, "hides_the_heading", SpoiltObjective<Flaw::by_heading
                 "denies that climbing costs more than sinking")
 ALTIPLAN_PLUGIN(Objective, "hides_the_time", SpoiltObjective<Flaw::by_time>, NoParams,
                 "denies that it depends on the time")
+ALTIPLAN_PLUGIN(Objective, "straight", SpoiltObjective<Flaw::flat>, NoParams,
+                "a route costs as if it led straight to its end")
+ALTIPLAN_PLUGIN(Objective, "twice_the_bound", SpoiltObjective<Flaw::dear>, NoParams,
+                "its bound of whole routes is twice that between places")
 ALTIPLAN_PLUGIN(Objective, "counts_calls", SpoiltObjective<Flaw::counts>, NoParams,
                 "its answer depends on how often it was asked")
 ALTIPLAN_BAD_ENTRIES(Objective, Sound, NoParams)

@@ -29,13 +29,6 @@ class WeightedSum final : public Objective {
     }
     return sum;
   }
-  double do_joining(const Route& route, const Request& request) const override {
-    double sum = 0;
-    for (const Term& term : terms_) {
-      sum += term.weight * term.objective->joining(route, request);
-    }
-    return sum;
-  }
   double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
     double sum = 0;
     for (const Term& term : terms_) {
@@ -162,7 +155,7 @@ MetricValues measured(const Route& route, const Request& request,
                       const std::vector<Metric>& metrics) {
   MetricValues values;
   for (const Metric& metric : metrics) {
-    values.emplace_back(metric.name, metric.of->total(route, request));
+    values.emplace_back(metric.name, metric.of->cost(route, request));
   }
   return values;
 }

@@ -20,10 +20,11 @@ struct Request;
 ///     places in the request's volume and all times. So it is at most the cost of any route.
 ///  4. cost depends on nothing that traits denies: the place (a leg moved elsewhere costs the
 ///     same), the heading (so does the leg flown backwards), the time.
-///  5. costs are at least 0. Without the trait `waypoints` their sum is that of cost over the legs;
-///     with it cost and bound serve those who look at single legs, and tell nothing of a route but
-///     that an infinite leg makes it infinite. min_cost is at most the sum of the costs of any
-///     route between the request's ends.
+///  5. costs are at least 0. Without the trait `waypoints` their sum is that of cost over the legs,
+///     and what joining them takes (stops at corners), which no search from leg to leg sees; with
+///     it cost and bound serve those who look at single legs, and tell nothing of a route but that
+///     an infinite leg makes it infinite. min_cost is at most the sum of the costs of any route
+///     between the request's ends.
 class ALTIPLAN_API Objective {
  public:
   struct Traits {
@@ -39,30 +40,30 @@ class ALTIPLAN_API Objective {
   double cost(const Leg& leg, double time_s, const Request& request) const;
   /// Lower bound of the cost of all routes between two places, at any time. Throws likewise.
   double bound(const Vec3& from, const Vec3& to, const Request& request) const;
-  /// What a route from the start costs, term by term: its cost is their sum, and searches for
-  /// compromises (Pareto) minimise each. Throws likewise.
+  /// What a route from the start costs, term by term: searches for compromises (Pareto) minimise
+  /// each. Throws likewise.
   std::vector<double> costs(const Route& route, const Request& request) const;
+  /// What a route from the start costs: the sum of its terms.
+  double cost(const Route& route, const Request& request) const;
   /// Lower bound of the cost of all routes between the request's ends, which are points. Throws
   /// likewise.
   double min_cost(const Request& request) const;
-  /// What it costs to join the legs of a route (stops at corners). Throws likewise.
-  double joining(const Route& route, const Request& request) const;
-  /// What limits and metrics count of a whole route: its costs, and joining its legs.
-  double total(const Route& route, const Request& request) const;
   /// Unit of costs ("m"), for people; "" without one.
   std::string unit() const { return do_unit(); }
   Traits traits() const { return do_traits(); }
 
+ protected:
+  /// The sum of cost over the legs, each at its time.
+  double legs_cost(const Route& route, const Request& request) const;
+
  private:
   virtual double do_cost(const Leg& leg, double time_s, const Request& request) const = 0;
   virtual double do_bound(const Vec3& from, const Vec3& to, const Request& request) const = 0;
-  /// Default: one term, the sum over the legs, each at its time.
+  /// Default: one term, legs_cost.
   virtual std::vector<double> do_costs(const Route& route, const Request& request) const;
   /// Default: bound.
   virtual double do_min_cost(const Request& request) const;
   virtual std::string do_unit() const = 0;
-  /// What a route costs beyond the sum of its legs' costs, at least 0. Default: 0.
-  virtual double do_joining(const Route& route, const Request& request) const;
   /// Default: depends on the place alone.
   virtual Traits do_traits() const;
 };

@@ -24,13 +24,11 @@ std::vector<Violation> TotalLimit::violations_of(double total) const {
 }
 
 std::vector<Violation> TotalLimit::violations_of(const Route& route, const Request& request) const {
-  return violations_of(of_->total(route, request));
+  return violations_of(of_->cost(route, request));
 }
 
 std::vector<Violation> TotalLimit::do_violations(const Polyline& route,
                                                  const Request& request) const {
-  Request by = request;
-  by.objective = of_;
-  return violations_of(cost_of(Route(route), by));
+  return violations_of(Route(route), request);
 }
 }  // namespace altiplan

@@ -43,7 +43,7 @@ std::vector<double> Objective::costs(const Route& route, const Request& request)
   return terms;
 }
 
-std::vector<double> Objective::do_costs(const Route& route, const Request& request) const {
+double Objective::legs_cost(const Route& route, const Request& request) const {
   const bool in_time = traits().time;
   double sum = 0;
   double time_s = 0;
@@ -52,7 +52,11 @@ std::vector<double> Objective::do_costs(const Route& route, const Request& reque
     sum += cost(leg, time_s, request);
     time_s += in_time ? leg_duration(leg, request) : 0;
   }
-  return {sum};
+  return sum;
+}
+
+std::vector<double> Objective::do_costs(const Route& route, const Request& request) const {
+  return {legs_cost(route, request)};
 }
 
 double Objective::min_cost(const Request& request) const {
@@ -64,16 +68,9 @@ double Objective::do_min_cost(const Request& request) const {
   return bound(request.start.position, request.goal.position, request);
 }
 
-double Objective::do_joining(const Route&, const Request&) const { return 0; }
-
-double Objective::joining(const Route& route, const Request& request) const {
-  return at_least_zero(attributed(objective_text, [&] { return do_joining(route, request); }),
-                       "the cost of joining legs");
-}
-
-double Objective::total(const Route& route, const Request& request) const {
+double Objective::cost(const Route& route, const Request& request) const {
   const std::vector<double> terms = costs(route, request);
-  return std::accumulate(terms.begin(), terms.end(), 0.0) + joining(route, request);
+  return std::accumulate(terms.begin(), terms.end(), 0.0);
 }
 
 double cost_of(const Leg& leg, const Request& request) {
@@ -81,11 +78,7 @@ double cost_of(const Leg& leg, const Request& request) {
 }
 
 double cost_of(const Route& route, const Request& request) {
-  if (!request.objective) {
-    return length(route);
-  }
-  const std::vector<double> terms = request.objective->costs(route, request);
-  return std::accumulate(terms.begin(), terms.end(), 0.0);
+  return request.objective ? request.objective->cost(route, request) : length(route);
 }
 
 double min_cost(const Request& request) {

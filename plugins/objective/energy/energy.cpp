@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "altiplan/error.hpp"
 #include "altiplan/flown_route.hpp"
@@ -31,7 +32,7 @@ struct ConstantPower final : Power {
   double watts(const SteadyFlight&) const override { return power_w; }
 };
 
-/// Wh of flight; joining legs takes what stops and accelerations do.
+/// Wh of flight; a whole route takes what stops and accelerations do as well.
 class FlightEnergy final : public Objective {
  public:
   FlightEnergy(const Params& params, const Site& site) {
@@ -52,12 +53,9 @@ class FlightEnergy final : public Objective {
     return leg_energy(leg, request, *power_);
   }
 
-  double do_joining(const Route& route, const Request& request) const override {
-    double more = flown_energy(route, request, *power_);
-    for (std::size_t i = 0; i < route.leg_count(); ++i) {
-      more -= leg_energy(route.leg(i), request, *power_);
-    }
-    return std::max(0.0, more);  // not a number where both are infinite
+  std::vector<double> do_costs(const Route& route, const Request& request) const override {
+    // No less than its legs alone, which bounds of searches count: what is slow may take less.
+    return {std::max(legs_cost(route, request), flown_energy(route, request, *power_))};
   }
 
   /// The least power for the least time.

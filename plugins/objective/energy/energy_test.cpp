@@ -34,8 +34,7 @@ TEST(EnergyObjective, StopsAreCountedOfAWholeRoute) {
   const auto energy = make_objective("energy", "{power_w: 180}");
   const Route route(Polyline{{0, 0, 100}, {500, 0, 100}, {1000, 0, 100}});
   // Each of two legs takes 50 s, and v / a = 5 s more from rest to rest.
-  EXPECT_NEAR(energy->joining(route, request), 180.0 * 10 / 3600, 1e-9);
-  EXPECT_NEAR(energy->total(route, request), 180.0 * 110 / 3600, 1e-9);
+  EXPECT_NEAR(energy->cost(route, request), 180.0 * 110 / 3600, 1e-9);
 }
 
 TEST(EnergyObjective, NeedsAPower) { EXPECT_THROW(make_objective("energy", "{}"), Error); }

@@ -23,8 +23,8 @@ struct Params {
   }
 };
 
-/// Seconds of flight at the vehicle's speeds in the wind; joining legs takes what its acceleration
-/// does.
+/// Seconds of flight at the vehicle's speeds in the wind; a whole route takes what its stops and
+/// accelerations do as well.
 class FlightTime final : public Objective {
  public:
   FlightTime(const Params& params, const Site&) : params_(params) {}
@@ -45,16 +45,13 @@ class FlightTime final : public Objective {
     return sum;
   }
 
-  double do_joining(const Route& route, const Request& request) const override {
+  std::vector<double> do_costs(const Route& route, const Request& request) const override {
     if (request.vehicle.wing || !request.vehicle.acceleration.takes_time()) {
-      return 0;
+      return {legs_cost(route, request)};
     }
-    double more = 0;
-    fly(route, request, [&](const FlownPhase& phase) { more += above(phase); });
-    for (std::size_t i = 0; i < route.leg_count(); ++i) {
-      more -= do_cost(route.leg(i), 0, request);
-    }
-    return std::max(0.0, more);  // not a number where both are infinite
+    double seconds = 0;
+    fly(route, request, [&](const FlownPhase& phase) { seconds += above(phase); });
+    return {seconds};
   }
 
   /// Seconds of a phase above the height.
