@@ -141,6 +141,17 @@ class Earth(unittest.TestCase):
                     plan = plan_of(leg, [(lon, square, 3, False)], firmware=firmware)
                     self.check(plan, model, expect="fail" if square == on else "pass")
 
+    def test_between_opposite_meridians_either_way_is_judged(self):
+        model = self.folder / "pole.tif"
+        subprocess.run(["gdal_create", "-q", "-ot", "Float32", "-outsize", "100", "100", "-burn",
+                        str(HEIGHT), "-a_srs", "EPSG:3413", "-a_ullr", "-9000", "9000", "9000",
+                        "-9000", str(model)], check=True)
+        leg = [(-90, 89.98, HEIGHT + 100), (90, 89.98, HEIGHT + 100)]
+        for lon in (0, 180):
+            self.check(plan_of(leg, [(lon, 89.98, 100, False)], firmware=3), model, expect="fail")
+            self.check(plan_of(leg, [(lon, 89.98, 100, False)]), model, expect="pass")
+        self.check(plan_of(leg, [(0, 90, 100, False)]), model, expect="fail")
+
     def test_heights_above_the_ellipsoid(self):
         model = self.model(5.4, 52.1, 4326)
         high = self.folder / "high.tif"

@@ -298,6 +298,20 @@ TEST(Earth, EdgesOverMoreThanHalfOfTheEarth) {
                                 {box(170, 58, -170, 60), {-175, 59}, true},
                                 {box(0, 80, 90, 90), {45, 89.9}, true},
                                 {box(0, 80, 90, 90), {-135, 89.9}, false},
+                                // Two readings, drawn either way around: both are closed.
+                                {box(170, -20, -169, -14), {-175, -17}, true},
+                                {box(-169, -20, 170, -14), {-175, -17}, true},
+                                {box(160, 50, -140, 72), {175, 60}, true},
+                                {box(-140, 50, 160, 72), {175, 60}, true},
+                                {box(163, -90, -131, -5), {178, -17}, true},
+                                {box(-131, -90, 163, -5), {178, -17}, true},
+                                {box(100, 40, -100, 75), {25, 58}, true},
+                                {box(-100, 40, 100, 75), {25, 58}, true},
+                                {box(160, 50, -140, 72), {175, 80}, false},
+                                // Around the pole, drawn either way around.
+                                {{{-150, 70}, {-30, 75}, {90, 72}}, {20, 89}, true},
+                                {{{90, 72}, {-30, 75}, {-150, 70}}, {20, 89}, true},
+                                {{{90, -72}, {-30, -75}, {-150, -70}}, {20, -89}, true},
                                 {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {10, 90}, true},
                                 {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {-45, 75}, true},
                                 {{{0, 70}, {90, 70}, {180, 70}, {-90, 70}}, {25, 58}, false},
@@ -307,6 +321,19 @@ TEST(Earth, EdgesOverMoreThanHalfOfTheEarth) {
     const auto parts = formats::in_frame(formats::unfolded(Polygon{ring, {}}), frame);
     EXPECT_EQ(holds(parts, 0.01, 0.01), inside)
         << ring[0][0] << " to " << ring[1][0] << " at " << at[0] << ", " << at[1];
+  }
+}
+
+TEST(Earth, WhatHasTwoReadingsOpensNothing) {
+  const Ring wide{{160, 50}, {-140, 50}, {-140, 72}, {160, 72}};
+  const Ring world{{-180, -90}, {180, -90}, {180, 90}, {-180, 90}};
+  for (const double lon : {175.0, 25.0}) {
+    const Frame frame = Frame::local({lon, 60});
+    EXPECT_FALSE(
+        holds(formats::in_frame(formats::unfolded(Polygon{wide, {}}), frame, true), 0.01, 0.01));
+    const Polygon mask = formats::unfolded(Polygon{world, {wide}});
+    EXPECT_TRUE(formats::has_two_readings(mask));
+    EXPECT_TRUE(holds(formats::in_frame(mask, frame), 0.01, 0.01));
   }
 }
 

@@ -110,7 +110,9 @@ namespace {
 /// middle.
 class FlownLine {
  public:
-  FlownLine(const Frame& frame, const Vec3& from, const Vec3& to, bool is_px4)
+  enum class Way { near, other };
+  FlownLine(const Frame& frame, const Vec3& from, const Vec3& to, bool is_px4,
+            Way around = Way::near)
       : frame_(frame),
         from_(frame.to_lonlat(from.x(), from.y())),
         to_(frame.to_lonlat(to.x(), to.y())),
@@ -122,6 +124,9 @@ class FlownLine {
       bearing_deg_ = bearing_deg;
     }
     to_[0] = longitude_near(to_[0], from_[0]);
+    if (around == Way::other) {
+      to_[0] -= std::copysign(360, to_[0] - from_[0]);
+    }
     const GroundRadii radii = ground_radii((from_[1] + to_[1]) / 2);
     const double east = radians(to_[0] - from_[0]) * radii.east;
     const double tangent = kEarth / radii.east;  // more than the latitude's
@@ -138,6 +143,11 @@ class FlownLine {
   }
   /// How far the vehicle may be beside it.
   double doubt_m() const { return doubt_m_; }
+  /// Between opposite meridians rounding decides which way around the Earth ArduPilot flies.
+  bool is_either_way() const {
+    constexpr double kRounding = 1e-6;  // degrees
+    return !is_px4_ && std::abs(to_[0] - from_[0]) > 180 - kRounding;
+  }
 
  private:
   const Frame& frame_;
@@ -155,31 +165,37 @@ void Flight::add_leg(const Vec3& from, double from_high, const Vec3& to, double 
   constexpr double kShort = 200;  // metres, on which all lines are one to a millimetre
   constexpr double kOff = 0.02;   // metres between the line and its chords
   constexpr int kMaxChords = 4096;
-  const double length = (to - from).head<2>().norm();
-  if (!world_.frame().has_position() || length < kShort) {
+  if (!world_.frame().has_position() || (to - from).head<2>().norm() < kShort) {
     add_strip(from, from_high, to, to_high, reach);
     return;
   }
-  const FlownLine line(world_.frame(), from, to, autopilot().is_px4());
-  const Vec3 middle = (from + to) / 2;
-  const double sag = (line.at(0.5) - Vec3(middle.x(), middle.y(), 0)).norm();
-  // The sag of a chord falls with the square of its length.
-  const int chords = std::clamp(int(std::ceil(std::sqrt(sag / kOff))), 1, kMaxChords);
-  const double doubt = line.doubt_m() + std::min(sag, kOff);
-  Vec3 last = from;
-  double last_high = from_high;
-  for (int n = 1; n <= chords; ++n) {
-    const double share = double(n) / chords;
-    Vec3 next = line.at(share);
-    next.z() = from.z() + share * (to.z() - from.z());
-    double next_high = from_high + share * (to_high - from_high);
-    if (n == chords) {
-      next = to;
-      next_high = to_high;
+  const auto add_along = [&](const FlownLine& line) {
+    const Vec3 middle = (from + to) / 2;
+    const double sag = (line.at(0.5) - Vec3(middle.x(), middle.y(), 0)).norm();
+    // The sag of a chord falls with the square of its length.
+    const int chords = std::clamp(int(std::ceil(std::sqrt(sag / kOff))), 1, kMaxChords);
+    const double doubt = line.doubt_m() + std::min(sag, kOff);
+    Vec3 last = from;
+    double last_high = from_high;
+    for (int n = 1; n <= chords; ++n) {
+      const double share = double(n) / chords;
+      Vec3 next = line.at(share);
+      next.z() = from.z() + share * (to.z() - from.z());
+      double next_high = from_high + share * (to_high - from_high);
+      if (n == chords) {
+        next = to;
+        next_high = to_high;
+      }
+      add_strip(last, last_high, next, next_high, reach + doubt);
+      last = next;
+      last_high = next_high;
     }
-    add_strip(last, last_high, next, next_high, reach + doubt);
-    last = next;
-    last_high = next_high;
+  };
+  const bool is_px4 = autopilot().is_px4();
+  const FlownLine line(world_.frame(), from, to, is_px4);
+  add_along(line);
+  if (line.is_either_way()) {
+    add_along(FlownLine(world_.frame(), from, to, is_px4, FlownLine::Way::other));
   }
 }
 

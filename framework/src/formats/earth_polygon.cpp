@@ -75,13 +75,34 @@ double twice_area(const Ring& ring) {
   return twice;
 }
 
-bool is_as_written(const Ring& ring, const Ring& by_short) {
-  constexpr double kMask = 60;
-  constexpr double kSmall = 20;
-  const double height = Extent(ring).size(1);
-  const double width = Extent(by_short).size(0);
-  const bool is_small = width > 0 && width <= kSmall && height <= kSmall;
-  return height > kMask || width == 0 || (!is_small && twice_area(ring) > 0);
+/// How edges over more than half of the Earth run, as far as the ring tells.
+enum class Reading { as_written, short_way, either };
+
+/// Files that keep to no rule draw their rings either way around, so the direction decides alone
+/// where the other reading is wider than any zone.
+Reading reading_of(const Ring& ring, const Ring& by_short) {
+  constexpr double kMask = 60;   // reached on both sides of the equator
+  constexpr double kSmall = 20;  // of latitude, and as wide on the ground
+  constexpr double kWidest = 100;
+  const Extent written(ring);
+  const Extent shorter(by_short);
+  const double width = shorter.size(0);
+  if (width == 0 || (written.low[1] <= -kMask && written.high[1] >= kMask)) {
+    return Reading::as_written;
+  }
+  const double nearest = std::min(std::abs(written.low[1]), std::abs(written.high[1])) *
+                         (written.low[1] * written.high[1] > 0);
+  const bool is_around_a_pole = width >= kTurn && written.size(1) <= kMask;
+  const bool is_small = width * std::cos(radians(nearest)) <= kSmall && written.size(1) <= kSmall;
+  if (is_around_a_pole || is_small) {
+    return Reading::short_way;
+  }
+  return width > kWidest && twice_area(ring) > 0 ? Reading::as_written : Reading::either;
+}
+
+bool has_two_readings(const Ring& ring) {
+  return ring.size() >= 3 && has_jump(ring) &&
+         reading_of(ring, continuous(ring)) == Reading::either;
 }
 
 /// Sutherland and Hodgman: the part of the ring on one side of a line. Where the line cuts the ring
@@ -291,7 +312,7 @@ Ring unfolded(const Ring& ring) {
     return ring;
   }
   const Ring by_short = continuous(ring);
-  return is_as_written(ring, by_short) ? ring : without_repeats(by_short);
+  return reading_of(ring, by_short) == Reading::short_way ? without_repeats(by_short) : ring;
 }
 
 Polygon unfolded(Polygon polygon) {
@@ -313,6 +334,29 @@ Polygon unfolded(Polygon polygon) {
   return polygon;
 }
 
+bool has_two_readings(const Polygon& polygon) {
+  return has_two_readings(polygon.outline) ||
+         std::any_of(polygon.holes.begin(), polygon.holes.end(),
+                     [](const Ring& hole) { return has_two_readings(hole); });
+}
+
+namespace {
+/// What is surely the polygon's: of an outline with two readings nothing stays in, both are kept
+/// out; a hole with two opens nothing.
+std::vector<Polygon> readings(Polygon polygon, bool keeps_in) {
+  std::erase_if(polygon.holes, [](const Ring& hole) { return has_two_readings(hole); });
+  if (!has_two_readings(polygon.outline)) {
+    return {std::move(polygon)};
+  }
+  if (keeps_in) {
+    return {};
+  }
+  Polygon by_short{without_repeats(continuous(polygon.outline)), {}};
+  polygon.holes.clear();
+  return {std::move(polygon), std::move(by_short)};
+}
+}  // namespace
+
 std::vector<Polygon> in_frame(const Polygon& polygon, const Frame& frame, bool keeps_in) {
   constexpr double kReach = 20;
   constexpr double kLeast = 1;
@@ -320,7 +364,9 @@ std::vector<Polygon> in_frame(const Polygon& polygon, const Frame& frame, bool k
     try {
       std::vector<Polygon> parts;
       const Surroundings surroundings(frame, reach, keeps_in);
-      surroundings.add(polygon, parts);
+      for (Polygon& reading : readings(polygon, keeps_in)) {
+        surroundings.add(std::move(reading), parts);
+      }
       return parts;
     } catch (const Error&) {
       if (reach < kLeast) {

@@ -41,6 +41,7 @@ class Converter {
       GroundPrism limits{{}, -kInfinity, kInfinity};
       set(volume.lower, limits.prism.floor, limits.above_floor);
       set(volume.upper, limits.prism.ceiling, limits.above_ceiling);
+      two_readings += formats::has_two_readings(volume.polygon);
       for (formats::Polygon& polygon : formats::in_frame(volume.polygon, site_.frame)) {
         limits.prism.outline = std::move(polygon.outline);
         limits.prism.holes = std::move(polygon.holes);
@@ -50,6 +51,7 @@ class Converter {
   }
 
   std::vector<PublishedZone> zones;
+  std::size_t two_readings = 0;
 
   std::vector<std::string> notes() const {
     std::vector<std::string> notes;
@@ -224,6 +226,7 @@ Published published_zones(const formats::Airspace& airspace, const PublishedRule
                               " zones with times closed at all times: expected the scenario's "
                               "start_time");
   }
+  published.two_readings = converter.two_readings;
   published.zones = std::move(converter.zones);
   return published;
 }

@@ -31,6 +31,7 @@ struct Published {
   std::vector<PublishedZone> zones;
   std::vector<std::string> notes;
   std::size_t inactive = 0;
+  std::size_t two_readings = 0;  ///< polygons, see formats::has_two_readings
 };
 
 /// The zones that are closed at some time of the flight. The site has a frame with a position.

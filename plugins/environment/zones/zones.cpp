@@ -137,6 +137,7 @@ class Zones final : public Environment {
     std::vector<std::string> above_ground_names;
     Drawing drawing;
     std::size_t inactive = 0;
+    std::size_t two_readings = 0;  // polygons, see formats::has_two_readings
     std::vector<std::string> notes;
     std::string why_none;  // zones lie within the bounds
     std::vector<Threat> threats;
@@ -165,6 +166,12 @@ class Zones final : public Environment {
           std::to_string(keep_in.size()) + " keep-in zones" +
           (keep_in.size() > 1 && drawing.keeps_in_all ? ", to be in all of them, " : ", ") +
           std::to_string(inactive) + " not active");
+      if (two_readings > 0) {
+        notes.push_back(
+            "an edge over more than half of the Earth can be read either way around in " +
+            std::to_string(two_readings) +
+            " polygons: both are closed; cut them at the 180th meridian");
+      }
       if (!why_none.empty()) {
         notes.push_back(why_none);
       }
@@ -213,9 +220,9 @@ class Zones final : public Environment {
       return active;
     }
 
-    std::vector<Shape> prisms(const Polygon& lonlat, bool keeps_in, double floor,
-                              double ceiling) const {
+    std::vector<Shape> prisms(const Polygon& lonlat, bool keeps_in, double floor, double ceiling) {
       std::vector<Shape> parts;
+      two_readings += formats::has_two_readings(lonlat);
       for (Polygon& part : formats::in_frame(lonlat, site.frame, keeps_in)) {
         parts.push_back(Prism{std::move(part.outline), std::move(part.holes), floor, ceiling});
       }
@@ -268,6 +275,7 @@ class Zones final : public Environment {
           published_zones(airspace, params.published, site, params.horizon_s, clip);
       notes.insert(notes.end(), published.notes.begin(), published.notes.end());
       inactive += published.inactive;
+      two_readings += published.two_readings;
       for (PublishedZone& zone : published.zones) {
         if (zone.limits.follows_ground()) {
           above_ground.push_back(std::move(zone.limits));
@@ -293,7 +301,7 @@ class Zones final : public Environment {
     }
 
     /// Of a volume whose limits are above sea level.
-    std::vector<Shape> shapes_of(const formats::ZoneVolume& volume, bool keeps_in) const {
+    std::vector<Shape> shapes_of(const formats::ZoneVolume& volume, bool keeps_in) {
       const auto height = [](const formats::ZoneLimit& limit, double none) {
         return limit.datum == formats::ZoneLimit::Datum::none ? none : limit.metres;
       };

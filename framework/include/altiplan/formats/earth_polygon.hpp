@@ -13,19 +13,24 @@ namespace altiplan::formats {
 /// 180th meridian, from the first corner on. A ring around a pole is closed along it.
 ALTIPLAN_API Ring continuous(Ring ring);
 
-/// A ring as its file means it, likewise without jumps at the 180th meridian. An edge over more
-/// than 180 degrees of longitude is taken as it is written (RFC 7946, 3.1.9) where the ring is then
-/// drawn counter-clockwise (3.1.6) or is taller than 60 degrees, a mask of the world; else, and
-/// always where the whole ring is then within 20 degrees, the short way.
+/// A ring as its file means it. An edge over more than 180 degrees of longitude runs the short way
+/// in rings that are then 20 degrees wide and high on the ground at most, or lead around a pole; as
+/// it is written (RFC 7946, 3.1.9) in masks of the world, which reach 60 degrees north and south,
+/// and in rings that are drawn counter-clockwise (3.1.6) whose other reading is wider than 100
+/// degrees. Others have two readings, and stay as they are written.
 ALTIPLAN_API Ring unfolded(const Ring& ring);
 /// Likewise, its holes on the turn of the Earth of its outline.
 ALTIPLAN_API Polygon unfolded(Polygon polygon);
+/// True if its outline or a hole has two readings.
+ALTIPLAN_API bool has_two_readings(const Polygon& polygon);
 
-/// What a polygon covers in a frame, as far as its surroundings reach: 20 degrees about the origin,
-/// or less if the frame's projection is undefined there. Edges are where they are in longitude and
-/// latitude to a millimetre near the origin, to 1e-7 of the distance from it. Several polygons if
-/// the 180th meridian, or the one opposite to the origin, cuts it; none if it lies elsewhere. Zones
-/// that were cut along the 180th meridian overlap by a centimetre there unless they are to stay in.
+/// What a polygon, unfolded, covers in a frame, as far as its surroundings reach: 20 degrees about
+/// the origin, or less if the frame's projection is undefined there. Edges are where they are in
+/// longitude and latitude to a millimetre near the origin, to 1e-7 of the distance from it. Several
+/// polygons if the 180th meridian, or the one opposite to the origin, cuts it; none if it lies
+/// elsewhere. Zones that were cut along the 180th meridian overlap by a centimetre there unless
+/// they are to stay in. Of an outline with two readings both are covered; none if it is to stay in.
+/// Holes that have two are covered.
 ALTIPLAN_API std::vector<Polygon> in_frame(const Polygon& polygon, const Frame& frame,
                                            bool keeps_in = false);
 
