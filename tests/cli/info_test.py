@@ -36,6 +36,20 @@ class Info(unittest.TestCase):
         (self.folder / name).write_text(text)
         return name
 
+    def test_a_sequence_of_buildings(self):
+        faces = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+        corners = [[x, y, z] for z in (0, 9000) for x, y in ((0, 0), (8000, 0), (8000, 8000), (0, 8000))]
+        lines = [{"type": "CityJSON", "version": "2.0", "CityObjects": {}, "vertices": [],
+                  "metadata": {"referenceSystem": "https://www.opengis.net/def/crs/EPSG/0/2056"},
+                  "transform": {"scale": [0.001] * 3, "translate": [2600000, 1200000, 400]}},
+                 {"type": "CityJSONFeature", "id": "house", "vertices": corners,
+                  "CityObjects": {"house": {"type": "Building", "geometry": [
+                      {"type": "Solid", "lod": "1", "boundaries": [[[face] for face in faces]]}]}}}]
+        file = self.write("bern.city.jsonl", "".join(json.dumps(line) + "\n" for line in lines))
+        out = self.info(file)
+        self.assertIn("city model", out)
+        self.assertIn("1 prisms", out)
+
     def test_an_elevation_model(self):
         out = self.info(TERRAIN)
         for said in (": elevation model\n", "403 x 344 posts", "236 to 1076 m, no voids",

@@ -35,6 +35,7 @@ constexpr LayerKind kLayers[] = {{".3dmap", "voxel_map", "voxel map"},
                                  {".stl", "mesh", "mesh"},
                                  {".obj", "mesh", "mesh"},
                                  {".city.json", "city", "city model"},
+                                 {".city.jsonl", "city", "city model"},
                                  {".csv", "city", "city model"}};
 
 bool ends_with(const std::string& text, const std::string& end) {
