@@ -159,7 +159,9 @@ std::string answers_of(const PluginEntry& entry, const Setup& setup) {
   return with_factory(
       entry, setup.with,
       Overloaded{[&](const EnvironmentFactory& make) { return of_environment(make, setup); },
-                 [&](const Factory<Constraint>& make) { return of_constraint(make, options); },
+                 [&](const ConstraintFactory& make) {
+                   return of_constraint(on_site(make, options, setup.before), options);
+                 },
                  [&](const Factory<Planner>& make) { return of_planner(make, options); },
                  [&](const Factory<LocalPlanner>& make) { return of_pilot(make, options); },
                  [&](const Factory<Smoother>& make) { return of_smoother(make, options); },

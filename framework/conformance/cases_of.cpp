@@ -7,8 +7,9 @@ Cases cases_of(const PluginEntry& entry, const Setup& setup) {
   const Options& options = setup.options;
   const auto stricter = [&] {
     const std::shared_ptr<const Value> tighter = kept(setup.tighter);
-    return tighter ? [entry, tighter] { return entry.constraint(tighter.get()); }
-                   : Factory<Constraint>();
+    return tighter ? [entry,
+                      tighter](const Site& site) { return entry.constraint(tighter.get(), site); }
+                   : ConstraintFactory();
   };
   return with_factory(
       entry, setup.with,
@@ -16,8 +17,8 @@ Cases cases_of(const PluginEntry& entry, const Setup& setup) {
           [&](const EnvironmentFactory& make) {
             return environment_cases(make, options, setup.before);
           },
-          [&](const Factory<Constraint>& make) {
-            return constraint_cases(make, stricter(), options);
+          [&](const ConstraintFactory& make) {
+            return constraint_cases(make, stricter(), options, setup.before);
           },
           [&](const Factory<Planner>& make) { return planner_cases(make, options); },
           [&](const Factory<LocalPlanner>& make) { return local_planner_cases(make, options); },

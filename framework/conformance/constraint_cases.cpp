@@ -370,9 +370,10 @@ void odd_questions(const ConstraintBench& bench, Report&) {
 }
 }  // namespace
 
-Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint>& tighter,
-                       const Options& options) {
-  const ConstraintBench bench{make, tighter, options};
+Cases constraint_cases(const ConstraintFactory& make, const ConstraintFactory& tighter,
+                       const Options& options, const std::shared_ptr<const World>& before) {
+  const ConstraintBench bench{on_site(make, options, before), on_site(tighter, options, before),
+                              options};
   return cases_on(bench, kConstraintPure,
                   {{"answers_do_not_depend_on_history_or_threads", pure},
                    {"tighten_never_loosens", tightens},

@@ -24,7 +24,8 @@ auto with_factory(const PluginEntry& entry, const Value* parameters, const Visit
         [entry, with](const Site& site) { return entry.environment(with.get(), site); }));
   }
   if (entry.constraint != nullptr) {
-    return visit(Factory<Constraint>([entry, with] { return entry.constraint(with.get()); }));
+    return visit(ConstraintFactory(
+        [entry, with](const Site& site) { return entry.constraint(with.get(), site); }));
   }
   if (entry.planner != nullptr) {
     return visit(Factory<Planner>([entry, with] { return entry.planner(with.get()); }));

@@ -98,10 +98,10 @@ void whole_routes(const ObjectiveBench& bench, Report& report) {
     Request ends = bench.request;
     ends.start.position = points.front();
     ends.goal.position = points.back();
-    const double least = objective->min_cost(ends);
-    report.expect(least <= whole * (1 + kOfStraight), kOfRoutes, [&] {
+    const double minimum = objective->min_cost(ends);
+    report.expect(minimum <= whole * (1 + kOfStraight), kOfRoutes, [&] {
       return "a route from " + text(points.front()) + " to " + text(points.back()) + " costs " +
-             text(whole) + ", min_cost is " + text(least);
+             text(whole) + ", min_cost is " + text(minimum);
     });
   }
 }

@@ -83,7 +83,10 @@ void iterations_kept(const PlannerBench& bench, Report& report) {
       const std::int64_t expanded = counter(result.counters, "expanded");
       report.expect(expanded <= std::int64_t(max_iterations), kPlannerBudget, [&] {
         return scene.name + ": of a budget of " + std::to_string(max_iterations) +
-               " iterations the planner used " + std::to_string(expanded);
+               " iterations the planner used " + std::to_string(expanded) +
+               (expanded == std::int64_t(max_iterations) + 1
+                    ? ": does it count one in `expanded` before it asks the budget for it?"
+                    : "");
       });
       report.expect(result.status != PlanStatus::timed_out || result.budget_hit, kPlannerBudget,
                     [&] {

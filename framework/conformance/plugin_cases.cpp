@@ -211,7 +211,7 @@ void makes(const PluginEntry& entry, Report& report) {
   site.volume = {{0, 0, 0}, {1000, 1000, 1000}};
   const auto make = [&](const Value* parameters) {
     return (entry.environment != nullptr && entry.environment(parameters, site) != nullptr) ||
-           (entry.constraint != nullptr && entry.constraint(parameters) != nullptr) ||
+           (entry.constraint != nullptr && entry.constraint(parameters, site) != nullptr) ||
            (entry.planner != nullptr && entry.planner(parameters) != nullptr) ||
            (entry.local_planner != nullptr && entry.local_planner(parameters) != nullptr) ||
            (entry.smoother != nullptr && entry.smoother(parameters) != nullptr) ||

@@ -335,4 +335,20 @@ std::shared_ptr<const Body> flat_wing(double unit) {
   body->parts.push_back(box_part(unit * Vec3(0.4, 1.6, 0.1), Vec3::Zero()));
   return body;
 }
+
+Factory<Constraint> on_site(const ConstraintFactory& make, const Options& options,
+                            const std::shared_ptr<const World>& before) {
+  if (!make) {
+    return {};
+  }
+  const auto world = before != nullptr ? before : std::make_shared<const World>();
+  return [make, world, options] {
+    Site site;
+    site.before = world.get();
+    site.frame = world->frame();
+    site.volume = options.volume.value_or(Box{{0, 0, 0}, {1000, 1000, 1000}});
+    site.random = RandomStream(options.seed).sub("site");
+    return make(site);
+  };
+}
 }  // namespace altiplan::conformance

@@ -141,4 +141,7 @@ struct Lanes {
   bool free_box = false;  ///< a step needs every cell of its bounding box free
 };
 double shortest(const Scene& cells, const Lanes& lanes);
+/// Makes constraints on a site in a world; null: an empty one. Null for no factory.
+Factory<Constraint> on_site(const ConstraintFactory& make, const Options& options,
+                            const std::shared_ptr<const World>& before);
 }  // namespace altiplan::conformance

@@ -69,7 +69,11 @@ template <class Interface, class Class, class Params>
 constexpr PluginEntry careless_entry(const char* name, const char* sentence) {
   PluginEntry entry = detail::make_entry<Interface, Class, Params>(name, sentence);
   const auto make = [](const Value*, const auto&... site) -> std::unique_ptr<Interface> {
-    return std::make_unique<Class>(Params(), site...);
+    if constexpr (std::is_constructible_v<Class, const Params&, decltype(site)...>) {
+      return std::make_unique<Class>(Params(), site...);
+    } else {
+      return std::make_unique<Class>(Params());
+    }
   };
   if constexpr (std::is_same_v<Interface, Environment>) {
     entry.environment = make;

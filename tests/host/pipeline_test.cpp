@@ -101,6 +101,18 @@ TEST_F(PipelineTest, ConstraintsOfBothFilesHold) {
   EXPECT_HAS(thrown.message, "the rule book is lost");
 }
 
+TEST_F(PipelineTest, AConstraintKnowsItsPlaceInTheWorld) {
+  const std::string past = "steps: [{plan: told, with: {does: past, past_m: [500, 700, 500]}}]\n";
+  const std::string here = "frame: {origin_lonlat: [8, 46]}\n";
+  // 46.0063 degrees lie 700.3 m north of the origin, 46.0062 689.2 m.
+  scenario(here + "constraints: [{south_of: {at_lonlat: [8.001, 46.0063, 0]}}]\n");
+  EXPECT_EQ(run(past).status, RunStatus::solved);
+  scenario(here + "constraints: [{south_of: {at_lonlat: [8.001, 46.0062, 0]}}]\n");
+  EXPECT_EQ(run(past).status, RunStatus::rejected);
+  scenario("constraints: [{south_of: {at_lonlat: [8.001, 46.0062, 0]}}]\n");
+  EXPECT_HAS(refusal(past), "constraints.south_of: ");
+}
+
 TEST_F(PipelineTest, AlternativesAreTriedInOrderUntilOneStands) {
   const RunResult result =
       run("steps:\n"

@@ -226,7 +226,7 @@ TEST_F(RegistryTest, LoadsAtTheFirstCallFromManyThreads) {
   EXPECT_STREQ(seen[0]->name, "alpha");
   EXPECT_NE(seen[0]->planner(nullptr), nullptr);
   EXPECT_EQ(seen[0]->describe(nullptr, "").fields.at(0).spec.name, "min_m");
-  EXPECT_NE(registry.get("constraint", "beta").constraint(nullptr), nullptr);
+  EXPECT_NE(registry.get("constraint", "beta").constraint(nullptr, Site()), nullptr);
 }
 
 TEST_F(RegistryTest, SaysWhatIsPresentWhereNoLibraryOffersAName) {

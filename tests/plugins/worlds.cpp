@@ -109,9 +109,26 @@ class NotNorth final : public Constraint {
   }
   RuleParams params_;
 };
+/// Forbids what lies north of a place.
+struct PlaceParams {
+  Point at;
+  void describe(Fields& f) { f.point(at).required().doc("no point lies farther north"); }
+};
+
+class SouthOf final : public Constraint {
+ public:
+  SouthOf(const PlaceParams& params, const Site& site) : max_y_(site.resolve(params.at).y()) {}
+
+ private:
+  bool do_admits(const Motion& leg) const override {
+    return leg.from.y() <= max_y_ && leg.to.y() <= max_y_;
+  }
+  double max_y_;
+};
 }  // namespace
 
 ALTIPLAN_PLUGIN(Environment, "liar", Liar, LayerParams, "contradicts itself")
 ALTIPLAN_PLUGIN(Environment, "cells", Cells, NoParams, "ten by ten by ten free cells")
 ALTIPLAN_PLUGIN(Environment, "ball", Ball, NoParams, "a ball of 80 m at (500, 500, 100)")
 ALTIPLAN_PLUGIN(Constraint, "not_north", NotNorth, RuleParams, "forbids the north")
+ALTIPLAN_PLUGIN(Constraint, "south_of", SouthOf, PlaceParams, "forbids what is north of a place")

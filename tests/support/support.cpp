@@ -107,7 +107,10 @@ std::unique_ptr<Smoother> make_smoother(std::string_view name, std::string_view 
 
 std::unique_ptr<Constraint> make_constraint(std::string_view name, std::string_view yaml) {
   const Value value = parameters(yaml);
-  return entry("constraint", name).constraint(&value);
+  const World empty;
+  Site site;
+  site.before = &empty;
+  return entry("constraint", name).constraint(&value, site);
 }
 
 std::unique_ptr<Tuner> make_tuner(std::string_view name, std::string_view yaml) {

@@ -86,13 +86,16 @@ std::vector<NamedConstraint> constraints_of(const Config& config, const Site& si
         const Value parameters =
             scale_error > 0 ? parameters_of(entry, scale_error) : entry.parameters;
         const std::string key = "constraints." + entry.plugin;
-        all.push_back(
-            {entry.plugin,
-             entry.plugin == "limit"
-                 ? limit_of(config, parameters, site, key)
-                 : plugin(*config.registry, "constraint", entry.plugin).constraint(&parameters)});
+        all.push_back({entry.plugin, entry.plugin == "limit"
+                                         ? limit_of(config, parameters, site, key)
+                                         : plugin(*config.registry, "constraint", entry.plugin)
+                                               .constraint(&parameters, site)});
+      } catch (const ConfigError&) {
+        throw;
       } catch (const PluginError& error) {
         throw PluginError(who + " " + error.what(), error.reason());
+      } catch (const Error& error) {
+        throw ConfigError(entry.parameters.where, "constraints." + entry.plugin, error.what());
       }
       if (all.back().constraint == nullptr) {
         throw PluginError(who + " made no object");

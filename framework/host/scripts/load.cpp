@@ -86,7 +86,7 @@ std::unique_ptr<Environment> environment_at(const Value* source, const Site& sit
   return make_environment(*the_scripts[N], source, site);
 }
 template <std::size_t N>
-std::unique_ptr<Constraint> constraint_at(const Value* source) {
+std::unique_ptr<Constraint> constraint_at(const Value* source, const Site&) {
   return make_constraint(*the_scripts[N], source);
 }
 template <std::size_t N>

@@ -37,14 +37,14 @@ struct LayerInfo {
   std::vector<std::string> notes;
 };
 
-/// Inputs of an environment, an objective or a task besides its parameters.
+/// Inputs besides their parameters of environments, constraints, objectives and tasks.
 struct ALTIPLAN_API Site {
   Frame frame;                ///< without a position until a layer provides one
   std::string frame_crs;      ///< from the scenario's `frame: {crs: …}`, or ""
   std::vector<LonLat> about;  ///< positions of a judged mission: lengths are true about them
   Box volume;                 ///< infinite where the scenario leaves it to the layers
   Vehicle vehicle;
-  const World* before = nullptr;  ///< the layers before it, of objectives and tasks all; not null
+  const World* before = nullptr;  ///< the layers before it, of other kinds all; not null
   std::optional<Vec3> start;      ///< if already known
   std::optional<Vec3> goal;
   double start_time_s = 0;  ///< of the scenario, seconds since 1970-01-01 UTC; 0 where not given

@@ -119,7 +119,7 @@ struct PluginEntry {
   const char* sentence;
   ParamReport (*describe)(const Value* parameters, const std::string& path);
   std::unique_ptr<Environment> (*environment)(const Value* parameters, const Site& site);
-  std::unique_ptr<Constraint> (*constraint)(const Value* parameters);
+  std::unique_ptr<Constraint> (*constraint)(const Value* parameters, const Site& site);
   std::unique_ptr<Planner> (*planner)(const Value* parameters);
   std::unique_ptr<LocalPlanner> (*local_planner)(const Value* parameters);
   std::unique_ptr<Smoother> (*smoother)(const Value* parameters);
@@ -138,7 +138,8 @@ struct NoParams {
 
 namespace detail {
 
-/// Constructs a plugin's object; exceptions that are not the framework's become PluginError.
+/// Constructs a plugin's object from its parameters, and the site if its constructor takes one;
+/// exceptions that are not the framework's become PluginError.
 template <class Interface, class Class, class Params, class... Site>
 std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
   try {
@@ -147,7 +148,11 @@ std::unique_ptr<Interface> make(const Value* parameters, const Site&... site) {
     if (!report.problems.empty()) {
       throw ConfigError(std::move(report.problems));
     }
-    return std::make_unique<Class>(params, site...);
+    if constexpr (std::is_constructible_v<Class, const Params&, const Site&...>) {
+      return std::make_unique<Class>(params, site...);
+    } else {
+      return std::make_unique<Class>(params);
+    }
   } catch (const Error&) {
     throw;
   } catch (...) {
@@ -194,7 +199,7 @@ constexpr PluginEntry make_entry(const char* name, const char* sentence) {
   if constexpr (std::is_same_v<Interface, Environment>) {
     entry.environment = &make<Interface, Class, Params, Site>;
   } else if constexpr (std::is_same_v<Interface, Constraint>) {
-    entry.constraint = &make<Interface, Class, Params>;
+    entry.constraint = &make<Interface, Class, Params, Site>;
   } else if constexpr (std::is_same_v<Interface, Planner>) {
     entry.planner = &make<Interface, Class, Params>;
   } else if constexpr (std::is_same_v<Interface, LocalPlanner>) {

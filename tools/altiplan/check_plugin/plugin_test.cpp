@@ -56,7 +56,7 @@ PluginEntry stub_of(const Manifest& plugin) {
   if (kind == "environment") {
     entry.environment = [](const Value*, const Site&) { return std::unique_ptr<Environment>(); };
   } else if (kind == "constraint") {
-    entry.constraint = [](const Value*) { return std::unique_ptr<Constraint>(); };
+    entry.constraint = [](const Value*, const Site&) { return std::unique_ptr<Constraint>(); };
   } else if (kind == "planner") {
     entry.planner = [](const Value*) { return std::unique_ptr<Planner>(); };
   } else if (kind == "local_planner") {

@@ -80,9 +80,11 @@ Request request_over(host::Registry& registry, const Flight& flight,
   request.start.position = flight.start;
   request.goal = {flight.goal, 0};
   std::vector<NamedConstraint> named;
+  Site site;
+  site.before = request.world.get();
   for (const std::string& text : constraints) {
     const Chosen of = chosen(registry, "constraint", text);
-    named.push_back({text, of.entry.constraint(&of.parameters)});
+    named.push_back({text, of.entry.constraint(&of.parameters, site)});
   }
   apply_constraints(request, std::move(named), AppliesTo::route);
   return request;

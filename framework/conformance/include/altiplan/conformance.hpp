@@ -58,6 +58,7 @@ struct Options {
 template <class Interface>
 using Factory = std::function<std::unique_ptr<Interface>()>;
 using EnvironmentFactory = std::function<std::unique_ptr<Environment>(const Site&)>;
+using ConstraintFactory = std::function<std::unique_ptr<Constraint>(const Site&)>;
 using ObjectiveFactory = std::function<std::unique_ptr<Objective>(const Site&)>;
 using TaskFactory = std::function<std::unique_ptr<Task>(const Site&)>;
 
@@ -65,9 +66,11 @@ using TaskFactory = std::function<std::unique_ptr<Task>(const Site&)>;
 Cases planner_cases(const Factory<Planner>& make, const Options& options = {});
 Cases local_planner_cases(const Factory<LocalPlanner>& make, const Options& options = {});
 Cases smoother_cases(const Factory<Smoother>& make, const Options& options = {});
-/// `tighter` makes the same constraint with a stricter parameter; may be null.
-Cases constraint_cases(const Factory<Constraint>& make, const Factory<Constraint>& tighter = {},
-                       const Options& options = {});
+/// `tighter` makes the same constraint with a stricter parameter; may be null. The site is in a
+/// world with the layers `before`; null: an empty one.
+Cases constraint_cases(const ConstraintFactory& make, const ConstraintFactory& tighter = {},
+                       const Options& options = {},
+                       const std::shared_ptr<const World>& before = nullptr);
 /// In a world with the layers `before`; null: none.
 Cases environment_cases(const EnvironmentFactory& make, const Options& options = {},
                         const std::shared_ptr<const World>& before = nullptr);

@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   std::size_t count = 0;
   register_cases("@name@", plugin_cases(*altiplan_plugins(&count)[0]));
   const auto make = [](double min_m) {
-    return [min_m] {
+    return [min_m](const Site&) {
       Params params;
       params.min_m = min_m;
       return std::make_unique<QuietPlace>(params);
