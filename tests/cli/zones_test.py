@@ -67,6 +67,15 @@ class Zones(unittest.TestCase):
         self.write("leg.gpx", GPX.replace("HEIGHT", str(height)))
         return self.call("check", "leg.gpx", "--scenario", "read.yaml", code=code)[0]
 
+    def test_a_start_in_a_zone_names_it(self):
+        inside = ZONES.replace("start: {at_lonlat: [25.01, 60.01, 100]}",
+                               "start: {at_lonlat: [25.045, 60.025, 200]}")
+        self.write("zones.yaml", inside)
+        run = subprocess.run([PROGRAM, "run", "pipeline.yaml"], cwd=self.folder,
+                             capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
+        self.assertRegex(run.stdout, r"the start .* cannot be flown: lies up to .*: 'hospital'")
+
     def test_a_map_is_read_back_as_it_was_written(self):
         for file in ("map.kml", "map.geojson"):
             with self.subTest(file):

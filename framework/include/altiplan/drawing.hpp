@@ -25,4 +25,9 @@ struct Drawing {
   std::vector<std::array<Vec3, 3>> triangles;  ///< surfaces other than shapes
   bool keeps_in_all = false;  ///< the vehicle must be in all keep_in shapes; else in one of them
 };
+
+/// The name of the part that holds the place or is nearest to it, "" if it has none. Of keep-in
+/// shapes one of which must hold the place it is the one that the place is deepest in, as far as
+/// its border; where all must, the one whose border is nearest, or that it is farthest out of.
+ALTIPLAN_API std::string name_at(const Drawing& drawing, const Vec3& p);
 }  // namespace altiplan

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "altiplan/drawing.hpp"
 #include "altiplan/energy.hpp"
 #include "altiplan/flown_route.hpp"
 #include "altiplan/total_limit.hpp"
@@ -195,6 +196,16 @@ CheckResult check(const Route& route, const Request& request) {
   return result;
 }
 
+namespace {
+/// ": 'Prison'", the part of the layer that a violation at a place is of, where it has a name.
+std::string part_of(const Violation& violation, const Vec3& p, const Request& request) {
+  const Layer* layer = request.world->find(violation.layer);
+  const auto drawing = layer != nullptr ? layer->environment->drawing() : std::nullopt;
+  const std::string part = drawing ? name_at(*drawing, p) : "";
+  return part.empty() || part == violation.layer ? "" : ": '" + part + "'";
+}
+}  // namespace
+
 std::string point_problem(const Vec3& p, const Request& request) {
   // A point has no leg: violations that only a leg of zero length has are left out.
   const std::vector<Violation> found = [&] {
@@ -206,7 +217,9 @@ std::string point_problem(const Vec3& p, const Request& request) {
     alone.constraints.clear();
     return leg_violations(std::nullopt, Leg::straight(p, p), alone, 0);
   }();
-  return found.empty() ? "" : place(p) + " cannot be flown: " + found.front().message;
+  return found.empty() ? ""
+                       : place(p) + " cannot be flown: " + found.front().message +
+                             part_of(found.front(), p, request);
 }
 
 namespace {
