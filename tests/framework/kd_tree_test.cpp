@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -98,6 +99,14 @@ void expect_equal(const KdTree& tree, const Plain& plain, const Vec3& p, const V
   tree.within(p, radius, found);
   EXPECT_EQ(found,
             plain.all([&](const Vec3& x) { return (x - p).squaredNorm() <= radius * radius; }));
+  const std::size_t count = std::size_t(whole(random, 40));
+  tree.nearest(p, count, found);
+  std::vector<std::size_t> nearest = plain.all([](const Vec3&) { return true; });
+  std::stable_sort(nearest.begin(), nearest.end(), [&](std::size_t a, std::size_t b) {
+    return (plain.points[a] - p).squaredNorm() < (plain.points[b] - p).squaredNorm();
+  });
+  nearest.resize(std::min(nearest.size(), count));
+  EXPECT_EQ(found, nearest);
   const Box box = Box::empty().with(p).with(q);
   tree.within(box, found);
   EXPECT_EQ(found, plain.all([&](const Vec3& x) { return box.contains(x); }));

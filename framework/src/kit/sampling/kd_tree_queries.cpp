@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries of KdTree.
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "../../multiversion.hpp"
 #include "kd_search.hpp"
@@ -132,6 +134,40 @@ struct WithinBall {
   }
 };
 
+struct NearestOnes {
+  using Point = std::pair<double, std::size_t>;  ///< squared distance, number
+  const Vec3& p;
+  std::size_t count;
+  std::vector<Point> farthest_first{};  ///< a heap
+  double limit() const {
+    return limit_of(farthest_first.size() < count ? kInfinity : farthest_first.front().first);
+  }
+  void keys_of(const Branch& branch, Keys& keys) const { distance_keys(branch, p, keys); }
+  void see(const Leaf& leaf) {
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      Four square;
+      squares(leaf, quarter, p, square);
+      for (std::uint32_t i = 0; i < 4; ++i) {
+        const std::uint32_t slot = 4 * std::uint32_t(quarter) + i;
+        if (slot < leaf.count) {
+          add({double(square[i]), leaf.number[slot]});
+        }
+      }
+    }
+  }
+  void add(const Point& point) {
+    if (farthest_first.size() == count) {
+      if (!(point < farthest_first.front())) {
+        return;
+      }
+      std::pop_heap(farthest_first.begin(), farthest_first.end());
+      farthest_first.pop_back();
+    }
+    farthest_first.push_back(point);
+    std::push_heap(farthest_first.begin(), farthest_first.end());
+  }
+};
+
 struct WithinBox {
   const Box& box;
   std::vector<std::size_t>& found;
@@ -165,6 +201,19 @@ std::size_t KdTree::nearest(const Vec3& p) const {
   Nearest query{p};
   find_nearest(leaves_.data(), branches_.data(), root_, height_, query);
   return query.best.number;
+}
+
+void KdTree::nearest(const Vec3& p, std::size_t count, std::vector<std::size_t>& found) const {
+  found.clear();
+  if (root_ == kOut || count == 0) {
+    return;
+  }
+  NearestOnes query{p, count};
+  search(leaves_.data(), branches_.data(), root_, height_, query);
+  std::sort_heap(query.farthest_first.begin(), query.farthest_first.end());
+  for (const auto& [square, number] : query.farthest_first) {
+    found.push_back(number);
+  }
 }
 
 std::size_t KdTree::min_sum(const Vec3& p, double p_weight, const Vec3& q, double q_weight) const {

@@ -37,6 +37,9 @@ class ALTIPLAN_API KdTree {
   bool contains(std::size_t number) const { return leaf_of_[number] != kOut; }
   /// The point nearest to p; kNone in an empty tree.
   std::size_t nearest(const Vec3& p) const;
+  /// Numbers of the `count` points nearest to p, or of all if there are fewer, nearest first.
+  /// `found` is emptied first.
+  void nearest(const Vec3& p, std::size_t count, std::vector<std::size_t>& found) const;
   /// The point x with the minimum p_weight |x − p| + q_weight |x − q|, weights >= 0; kNone in an
   /// empty tree.
   std::size_t min_sum(const Vec3& p, double p_weight, const Vec3& q, double q_weight) const;
