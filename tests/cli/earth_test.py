@@ -141,6 +141,14 @@ class Earth(unittest.TestCase):
                     plan = plan_of(leg, [(lon, square, 3, False)], firmware=firmware)
                     self.check(plan, model, expect="fail" if square == on else "pass")
 
+    def test_long_legs_low_over_flat_ground_pass(self):
+        model = self.model(10, 45, 4326, 32000)
+        start = end_of(10, 45, 240, 30000)
+        leg = [(*start, HEIGHT + 20), (*end_of(*start, 60, 60000), HEIGHT + 20)]
+        for firmware in (3, 12):
+            self.check(plan_of(leg, firmware=firmware), model, "--min-agl", "19", expect="pass")
+            self.check(plan_of(leg, firmware=firmware), model, "--min-agl", "21", expect="fail")
+
     def test_between_opposite_meridians_either_way_is_judged(self):
         model = self.folder / "pole.tif"
         subprocess.run(["gdal_create", "-q", "-ot", "Float32", "-outsize", "100", "100", "-burn",

@@ -6,6 +6,7 @@
 
 #include "altiplan/ground.hpp"
 #include "altiplan/nearest_place.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -14,6 +15,7 @@ constexpr double kRise = 8;           // metres between lines of one strip, one 
 constexpr double kTouch = 1;          // metres: where a slanted landing ends
 constexpr int kLookedAt = 4;          // lines
 constexpr std::size_t kEnough = 500;  // lines that are not valid
+constexpr double kOnLine = 5;         // metres beside a line that need no mention
 constexpr double kGrain = 0.5;        // metres: reaches are rounded up to it
 
 /// The same rule's violation of a part of a leg, if it is violated there.
@@ -95,6 +97,30 @@ const BandJudge::Requests& BandJudge::within(double reach_m) const {
   requests.sky.constraints.clear();
   requests.ground.world = std::make_shared<const World>(ground_);
   return by_reach_.emplace(reach, std::move(requests)).first->second;
+}
+
+std::optional<BandJudge::Line> BandJudge::too_near_ground(const Line& line) const {
+  constexpr double kNarrow = 2;  // metres
+  if (leg_ok(std::nullopt, line.leg, within(line.reach_m).ground)) {
+    return std::nullopt;
+  }
+  const Vec3 way = line.leg.to - line.leg.from;
+  const double length = way.head<2>().norm();
+  if (line.reach_m <= kNarrow || length == 0) {
+    return line;
+  }
+  // Two lines of half the reach, beside each other and as much longer at both ends.
+  const double half = line.reach_m / 2;
+  const Vec3 longer(way.x() * half / length, way.y() * half / length, 0);
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 aside = side * Vec3(-longer.y(), longer.x(), 0);
+    const Line part{Leg::straight(line.leg.from - longer + aside, line.leg.to + longer + aside),
+                    half};
+    if (const auto near = too_near_ground(part)) {
+      return near;
+    }
+  }
+  return std::nullopt;
 }
 
 bool BandJudge::is_clear(std::span<const Strip> strips) const {
@@ -265,8 +291,8 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
     for (const Line& line : lines) {
       if (part.ground != FlownPart::Ground::kept_off) {
         judge_end(line, part.ground, worst);
-      } else if (!leg_ok(std::nullopt, line.leg, within(line.reach_m).ground)) {
-        invalid.push_back(line);
+      } else if (const auto near = too_near_ground(line)) {
+        invalid.push_back(*near);
       }
     }
   }
@@ -277,8 +303,13 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
     }
   }
   std::vector<Found> found;
-  for (const Worst& one : worst) {
-    found.push_back({one.violation, place_of(one)});
+  for (Worst& one : worst) {
+    const Vec3 at = place_of(one);
+    if (one.violation.constraint == "clearance" && one.line.reach_m > kOnLine) {
+      one.violation.message += ", " + with_decimals(one.line.reach_m, 1) +
+                               " m of them for how far beside its line it may fly";
+    }
+    found.push_back({std::move(one.violation), at});
   }
   return found;
 }
@@ -293,7 +324,7 @@ bool BandJudge::is_valid(const FlownPart& part) const {
   }
   const auto is_line_valid = [&](const Line& line) {
     return part.ground == Ground::kept_off
-               ? leg_ok(std::nullopt, line.leg, within(line.reach_m).ground)
+               ? !too_near_ground(line)
                : !is_too_high(line.leg) &&
                      !(part.ground == Ground::touched_along && is_below_ground(line.leg));
   };

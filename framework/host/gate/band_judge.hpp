@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,9 @@ class BandJudge {
   /// Those that tell whether all are valid where there is ground alone.
   std::vector<Line> ground_lines_of(const Strip& strip) const;
   const Requests& within(double reach_m) const;
+  /// Of lines that together cover a line's reach to its sides, one that does not keep off the
+  /// ground; nothing if all do. To its sides alone the vehicle may be so far off, not below.
+  std::optional<Line> too_near_ground(const Line& line) const;
   /// Looks at lines of the strips that may violate the sky, until `look` has seen enough (false):
   /// halves of the strips are held against it as a whole, until they are clear or one is left.
   bool look_at_suspects(std::span<const Strip> strips,

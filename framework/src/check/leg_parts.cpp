@@ -52,9 +52,11 @@ Violation too_near(const Layer* layer, const Leg& leg, const Request& request, s
   }
   const double clearance = nearest.distance;
   // The layer may block from around: outside a keep-in zone.
-  std::string where = clearance < 0 ? "lies up to " + fixed(-clearance) + " m inside what '" +
-                                          layer->id + "' blocks"
-                                    : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
+  const std::string inside = "inside what '" + layer->id + "' blocks";
+  std::string where = clearance == -kInfinity ? "lies " + inside
+                      : clearance < 0
+                          ? "lies up to " + fixed(-clearance) + " m " + inside
+                          : "comes to " + fixed(clearance) + " m of '" + layer->id + "'";
   if (const auto* reasons = dynamic_cast<const WhatBlocks*>(layer->environment.get())) {
     const std::string what =
         reasons->what_blocks(points[nearest.leg], points[nearest.leg + 1], clearance);
