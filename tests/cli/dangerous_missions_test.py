@@ -99,7 +99,7 @@ MISSIONS = [
      [way(0, 0, 100), way(1500, 0, 100), do(177, 1, 10), way(1500, 1500, 100)], (1400, 600, 1650, 700, 0, 2000), {},
      "item 2 (waypoint)\", \"item 4"),
     ("a jump for ever that PX4 ends", PX4_COPTER,
-     [off(), way(200, 0), way(300, 0), do(177, 2, -1), way(600, 0)], (400, -50, 500, 50, 0, 2000), {}, "too many steps"),
+     [off(), way(200, 0), way(300, 0), do(177, 2, -1), way(600, 0)], (400, -50, 500, 50, 0, 2000), {}, "inside what"),
     ("an item that an aeroplane has just passed", PLANE,
      [way(0, 0, 100), way(900, 0, 100), do(177, 2, -1)], (800, 90, 1000, 400, 0, 2000), {}, "just passed"),
     ("rates of climb that are changed", COPTER, [off(), do(178, 2, 0.2), way(100, 0, 90)], None, {}, "rates of climb"),

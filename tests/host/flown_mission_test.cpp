@@ -416,5 +416,38 @@ TEST(FlownMission, AHomeThatIsSetOnACircleIsNotJudged) {
   EXPECT_FALSE(
       has_rule(fly({command(22, 0, 0, 50), command(16, 0, 500, 50), here}, kCopter), "not_judged"));
 }
+
+/// Rounds, of which only the first few are flown one by one; a hovering vehicle's to the take-off.
+TEST(FlownMission, RoundsOfAJumpTakeAsLongEach) {
+  for (const auto& [autopilot, target] :
+       {std::pair(kCopter, 1.0), std::pair(kCopter, 2.0), std::pair(kPx4Copter, 1.0),
+        std::pair(kPx4Copter, 2.0), std::pair(kPlane, 2.0)}) {
+    const auto flown = [&, target = target, autopilot = autopilot](double rounds) {
+      return fly({command(22, 0, 0, 60), command(16, 900, 0, 60), command(16, 900, 900, 60),
+                  order(177, {target, rounds, 0, 0}), command(16, 1800, 900, 80),
+                  command(21, 1800, 1800, 0)},
+                 autopilot);
+    };
+    const auto strips = [](const FlownMission& mission) {
+      std::size_t count = 0;
+      for (const FlownPart& one : mission.parts) {
+        count += one.strips.size();
+      }
+      return count;
+    };
+    const auto slow = flown(3).time;
+    const FlownMission some = flown(20);
+    const auto few = some.time;
+    const auto more = flown(21).time;
+    const FlownMission all = flown(65535);
+    EXPECT_GT(few.min_s, slow.min_s);
+    const double each = more.min_s - few.min_s;
+    const double each_slow = more.max_s - few.max_s;
+    EXPECT_GT(each, 0);
+    EXPECT_NEAR(all.time.min_s, few.min_s + each * (65535 - 20), 1e-6 * all.time.min_s);
+    EXPECT_NEAR(all.time.max_s, few.max_s + each_slow * (65535 - 20), 1e-6 * all.time.max_s);
+    EXPECT_EQ(strips(all), strips(some));
+  }
+}
 }  // namespace
 }  // namespace altiplan::host::flown_mission_test

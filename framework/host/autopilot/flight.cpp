@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace altiplan::host {
 namespace {
@@ -54,9 +55,12 @@ std::array<double, 2> Flight::known_grounds(const Eigen::Vector2d& at) const {
   if (autopilot().is_px4() || !world_.has_ground() || !world_.frame().has_position()) {
     return {own, own};
   }
-  const double most = parameter("TERRAIN_OFS_MAX");
-  const double shift = std::clamp(home_ground - grid_ground(home), -most, most);
-  return {own, grid_ground(at) + shift};
+  if (!grid_shift_) {
+    const double maximum = parameter("TERRAIN_OFS_MAX");
+    grid_spacing_ = parameter("TERRAIN_SPACING");
+    grid_shift_ = std::clamp(home_ground - grid_ground(home), -maximum, maximum);
+  }
+  return {own, grid_ground(at) + *grid_shift_};
 }
 
 // AP_Terrain::calculate_grid_info and height_amsl: blocks of 24 by 28 cells, counted from whole
@@ -65,7 +69,7 @@ double Flight::grid_ground(const Eigen::Vector2d& at) const {
   constexpr double kMetres = 111318.84502145034;  // a degree
   constexpr int kNorth = 24;
   constexpr int kEast = 28;
-  const double spacing = parameter("TERRAIN_SPACING");
+  const double spacing = grid_spacing_;
   const auto [lon, lat] = world_.frame().to_lonlat(at.x(), at.y());
   const auto shrink = [](double a, double b) { return std::cos(radians((a + b) / 2)); };
   const auto offset = [&](double from_lat, double from_lon, double north, double east) {
@@ -79,11 +83,13 @@ double Flight::grid_ground(const Eigen::Vector2d& at) const {
   const std::pair<double, double> block = offset(lat0, lon0, row * kNorth, column * kEast);
   const double north = (lat - block.first) * kMetres / spacing;
   const double east = (lon - block.second) * kMetres * shrink(lat, block.first) / spacing;
-  const auto node = [&](double n, double e) {
-    const auto key = offset(block.first, block.second, std::floor(north) + n, std::floor(east) + e);
-    const auto [found, is_new] = grid_.try_emplace(key, 0);
+  const auto node = [&](int n, int e) {
+    const int i = int(std::floor(north)) + n;
+    const int j = int(std::floor(east)) + e;
+    const auto [found, is_new] = grid_.try_emplace({int(lat0), int(lon0), row, column, i, j}, 0);
     if (is_new) {
-      const auto [x, y] = world_.frame().to_local(key.second, key.first);
+      const auto [to_lat, to_lon] = offset(block.first, block.second, i, j);
+      const auto [x, y] = world_.frame().to_local(to_lon, to_lat);
       found->second = ground({x, y});
     }
     return found->second;
@@ -210,23 +216,23 @@ void Flight::add_disc(const Destination& centre, double inner, double outer, dou
   for (int ring = 0; ring <= rings; ++ring) {
     const double radius = inner + (outer - inner) * ring / rings;
     const int sides = std::clamp(int(std::ceil(radius / 2)), 6, radius > 500 ? 96 : 48);
+    const auto corner = [&](int n) {
+      // The chords' corners lie outside, so that the chords reach the circle.
+      const double r = radius / std::cos(kPi / sides);
+      const double angle = 2 * kPi * n / sides;
+      const Eigen::Vector2d p = centre.at + r * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      if (!centre.above_ground) {
+        return std::pair(Vec3(p.x(), p.y(), low), high);
+      }
+      const auto grounds = known_grounds(p);
+      const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+      return std::pair(Vec3(p.x(), p.y(), lowest + *centre.above_ground + low),
+                       highest + *centre.above_ground + high);
+    };
+    auto next = corner(0);
     for (int side = 0; side < sides; ++side) {
-      const auto corner = [&](int n) {
-        // The chords' corners lie outside, so that the chords reach the circle.
-        const double r = radius / std::cos(kPi / sides);
-        const double angle = 2 * kPi * n / sides;
-        const Eigen::Vector2d p = centre.at + r * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-        if (!centre.above_ground) {
-          return std::pair(Vec3(p.x(), p.y(), low), high);
-        }
-        const auto grounds = known_grounds(p);
-        const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
-        return std::pair(Vec3(p.x(), p.y(), lowest + *centre.above_ground + low),
-                         highest + *centre.above_ground + high);
-      };
-      const auto [from, from_high] = corner(side);
-      const auto [to, to_high] = corner(side + 1);
-      add_strip(from, from_high, to, to_high, kSpacing / 2);
+      const auto last = std::exchange(next, corner(side + 1));
+      add_strip(last.first, last.second, next.first, next.second, kSpacing / 2);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,7 +76,7 @@ class Flight {
   void add_disc(const Destination& centre, double inner, double outer, double low, double high);
 
   Eigen::Vector2d home{0, 0};
-  double home_ground = 0;  ///< where the world has no ground
+  double home_ground = 0;  ///< where the world has no ground; set once, as home
   double wind_mps = 0;
   std::size_t before = 0;   ///< the command whose position was flown to last
   std::size_t repeats = 0;  ///< how often the present leg was flown before
@@ -88,7 +89,11 @@ class Flight {
   FlownMission& mission_;
   const World& world_;
   const Parameters& parameters_;
-  mutable std::map<std::pair<double, double>, double> grid_;  ///< nodes, by degrees
+  // ArduPilot's own grid of the ground: its nodes by whole degrees, block and node, and what it is
+  // shifted by to be right at home.
+  mutable std::map<std::array<int, 6>, double> grid_;
+  mutable double grid_spacing_ = 0;
+  mutable std::optional<double> grid_shift_;
 };
 
 /// A vehicle that hovers, at a place.

@@ -124,6 +124,7 @@ void Walker::walk() {
       continue;
     }
     if (commands_.is_jump(n)) {
+      fly_rounds(n);
       const std::optional<std::size_t> next = commands_.after_jump(n);
       if (!next && jumps > 0) {
         give_up(n, kJumpsAlone);
@@ -157,6 +158,22 @@ void Walker::walk() {
 bool Walker::give_up(std::size_t n, const std::string& why) {
   flight_.remark(Weight::not_judged, "not_judged", n, why);
   return true;
+}
+
+void Walker::fly_rounds(std::size_t n) {
+  constexpr double kEqual = 1e-6;  // seconds
+  Round& last = rounds_[n];
+  const TimeSpan time{mission_.time.min_s - last.end.min_s, mission_.time.max_s - last.end.max_s};
+  const bool is_alike = std::abs(time.min_s - last.time.min_s) < kEqual &&
+                        std::abs(time.max_s - last.time.max_s) < kEqual;
+  last = {mission_.time, time, is_alike ? last.alike + 1 : 0};
+  if (last.alike <= kFlownAnew) {
+    return;
+  }
+  if (const int rounds = commands_.make_all_jumps(n); rounds > 0) {
+    flight_.take({rounds * time.min_s, rounds * time.max_s});
+    flight_.fly_again(commands_.target_of(n).value(), n);
+  }
 }
 
 Walker::Way Walker::way_to(std::size_t n) const {

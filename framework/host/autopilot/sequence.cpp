@@ -58,6 +58,12 @@ std::optional<std::size_t> Sequence::after_jump(std::size_t n) {
   return *target;
 }
 
+int Sequence::make_all_jumps(std::size_t n) {
+  const int left = std::max(jumps_left(n), 0);
+  jumped_[n] += left;
+  return left;
+}
+
 std::optional<std::size_t> Sequence::next_position(std::size_t n) const {
   std::size_t i = n + 1;
   for (std::size_t steps = 0; i < commands_.size() && steps < 2 * commands_.size(); ++steps) {

@@ -38,6 +38,8 @@ class Sequence {
   /// The command after a jump, which is counted; none for a jump that has been made twice and is
   /// made for ever.
   std::optional<std::size_t> after_jump(std::size_t n);
+  /// Counts all that are left of a jump as made, and returns their number; 0 for one without end.
+  int make_all_jumps(std::size_t n);
   /// The next position that is flown to, if there is one.
   std::optional<std::size_t> next_position(std::size_t n) const;
 
