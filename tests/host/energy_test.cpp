@@ -81,7 +81,7 @@ TEST(Energy, Polar) {
   talon.wing_m2 = 0.314;
   talon.cd0 = 0.0398;
   talon.k = 0.0544;
-  talon.cl_of_least_drag = 0.108;
+  talon.cl_of_min_drag = 0.108;
   talon.efficiency = 0.5;
   EXPECT_GT(each_line(file,
                       [&](const auto& w) {

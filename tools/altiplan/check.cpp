@@ -274,7 +274,7 @@ void add_check(App& app, Action& action) {
   add_battery(command, arguments.mission.plan, outputs->back());
   command
       .add_option("--fix-returns FILE", arguments.mission.plan.fixed_returns,
-                  "with --returns: write the least return height with which all pass (.param)")
+                  "with --returns: write the minimum return height with which all pass (.param)")
       ->needs(outputs->back());
   command
       .add_flag("--survey", arguments.survey,

@@ -251,7 +251,7 @@ host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
                                    " m above sea level: armed at that place and height");
   }
   add_metres("vehicle's radius", plan.radius_m);
-  add_metres("least height above ground", plan.min_above_ground_m);
+  add_metres("minimum height above ground", plan.min_above_ground_m);
   add_metres("greatest height above ground", plan.max_above_ground_m);
   add_metres("greatest distance from the ground", plan.max_ground_distance_m);
   basis.emplace_back("hours", plan.start_time
@@ -475,7 +475,8 @@ int check(PlanCheck plan, const std::optional<host::Config>& scenario,
   }
   if (plan.certificate) {
     host::write_file(*plan.certificate, busy("writing the certificate", [&] {
-      return certificate(report, world, basis_of(plan, mission, report));
+      return certificate(judged.report, judged.world,
+                         basis_of(plan, judged.mission, judged.report));
     }));
   }
   if (plan.junit) {

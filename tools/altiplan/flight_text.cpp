@@ -16,8 +16,8 @@ std::string steep_legs(const Route& route, const Vehicle& vehicle) {
   double steepest[2] = {0, 0};  // up and down, radians
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const double climb = climb_angle(route[i + 1] - route[i]);
-    double& most = steepest[climb < 0 ? 1 : 0];
-    most = std::max(most, std::abs(climb));
+    double& maximum = steepest[climb < 0 ? 1 : 0];
+    maximum = std::max(maximum, std::abs(climb));
   }
   std::string words;
   for (const int down : {0, 1}) {

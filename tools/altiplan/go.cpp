@@ -283,7 +283,7 @@ void add_wishes(App& command, GoArguments& arguments) {
     return command.add_option(std::string(name) + " METRES", value, what)
         ->check(number_from(0, 1e4));
   };
-  metres("--min-agl", wish.min_above_ground_m, "least height above ground (default 50)");
+  metres("--min-agl", wish.min_above_ground_m, "minimum height above ground (default 50)");
   metres("--max-agl", wish.max_above_ground_m, "greatest height above ground (default none)");
   auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
   command

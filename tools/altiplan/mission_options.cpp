@@ -32,7 +32,7 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
           "them")
       ->needs(terrain);
   metres("--radius", plan.radius_m, "radius of the vehicle (m, default 0)");
-  metres("--min-agl", plan.min_above_ground_m, "least height above ground (m)");
+  metres("--min-agl", plan.min_above_ground_m, "minimum height above ground (m)");
   metres("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)");
   metres("--max-distance", plan.max_ground_distance_m,
          "greatest distance from the nearest point of the ground (m)");

@@ -202,7 +202,7 @@ void add_run(App& app, Action& action) {
       command.add_option("--trace FILE", arguments.trace, "write a search trace to this file");
   command
       .add_option("--trace-limit MB", arguments.trace_limit_mb,
-                  "most that the trace may take (MB, default 64)")
+                  "maximum size of the trace (MB, default 64)")
       ->check(Check::between(1, 1'000'000))
       ->needs(trace);
   command.add_option("-o,--out FILE", arguments.out, "write the result to this file (JSON)");

@@ -78,14 +78,14 @@ void Hover::climb(std::size_t command, const char* what, double low_m, double hi
   for (const Eigen::Vector2d& place : leave_circle()) {
     flight_.add_column(place, bottom, top, std::min(reach(), 2.0));
   }
-  const double least = std::max({low_m - high, low - high_m, 0.0});
-  const double most = std::max(high_m - low, high - low_m);
+  const double minimum = std::max({low_m - high, low - high_m, 0.0});
+  const double maximum = std::max(high_m - low, high - low_m);
   const double first =
       flight_.autopilot().is_px4() ? flight_.parameter("MPC_TKO_SPEED") : climb_rate();
   const bool rises = low_m >= low;
   const double fastest = rises ? std::max(first, climb_rate()) : sink_rate();
   const double slowest = rises ? std::min(first, climb_rate()) : sink_rate();
-  flight_.take({least / fastest, most / slowest + 5});
+  flight_.take({minimum / fastest, maximum / slowest + 5});
   low = low_m;
   high = high_m;
   previous_.reset();

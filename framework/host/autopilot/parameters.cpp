@@ -117,13 +117,13 @@ void expect_possible(const Row& row, double value) {
   const std::string_view name = row.name;
   const bool is_angle =
       name == "ROLL_LIMIT_DEG" || name == "PTCH_LIM_MAX_DEG" || name == "FW_R_LIM";
-  const double most = is_angle ? 85 : 1e5;
+  const double maximum = is_angle ? 85 : 1e5;
   const bool may_be_zero =
       std::find(std::begin(kMayBeZero), std::end(kMayBeZero), name) != std::end(kMayBeZero);
-  if (!(std::abs(value) <= most) || (!may_be_zero && !(value > 0))) {
+  if (!(std::abs(value) <= maximum) || (!may_be_zero && !(value > 0))) {
     throw Error("parameter " + std::string(name) + ": expected " +
                 (may_be_zero ? "at most " : "more than 0, at most ") +
-                std::to_string(std::llround(most)) + ", found " + std::to_string(value));
+                std::to_string(std::llround(maximum)) + ", found " + std::to_string(value));
   }
 }
 

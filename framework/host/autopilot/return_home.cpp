@@ -120,8 +120,8 @@ std::array<double, 2> Walker::return_heights(double z, double distance,
   const double nearest = std::max(distance - doubt, 0.0);
   if (is_px4()) {
     const double above = parameter("RTL_RETURN_ALT");
-    double least = above;
-    double most = above;
+    double minimum = above;
+    double maximum = above;
     if (autopilot_.is_copter()) {
       // Beside the cone it returns at full height; within NAV_ACC_RAD at twice the distance.
       const double cone = parameter("RTL_CONE_ANG");
@@ -129,16 +129,16 @@ std::array<double, 2> Walker::return_heights(double z, double distance,
       const double radius = std::max(near, parameter("RTL_MIN_DIST"));
       const double slope = 1 / std::tan(radians(std::clamp(cone, 1.0, 89.0)));
       if (cone > 0 && nearest <= radius) {
-        least = std::min(above, std::min(slope, 2.0) * nearest);
+        minimum = std::min(above, std::min(slope, 2.0) * nearest);
       }
       if (cone > 0 && distance + doubt <= radius) {
-        most = std::max(std::min(above, slope * (distance + doubt)), 2 * near);
+        maximum = std::max(std::min(above, slope * (distance + doubt)), 2 * near);
       } else if (cone > 0 && nearest <= radius) {
-        most = std::max(above, 2 * near);
+        maximum = std::max(above, 2 * near);
       }
     }
-    return {std::max(z, std::min(home_z_, refuge.z) + least),
-            std::max(z, std::max(home_z_, refuge.z) + most)};
+    return {std::max(z, std::min(home_z_, refuge.z) + minimum),
+            std::max(z, std::max(home_z_, refuge.z) + maximum)};
   }
   if (!autopilot_.is_copter()) {
     return {std::max(z, home_z_ + 15), std::max(z, home_z_ + 15)};
@@ -229,9 +229,9 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   const double given = is_px4() ? 0 : parameter("RTL_RADIUS");
   const double radius = std::abs(given != 0 ? given : own);
   if (failsafe_) {
-    const double least =
+    const double minimum =
         is_px4() ? std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT") : leg.to.low;
-    wing_->return_from(n, *failsafe_, leg.to, is_px4() ? std::abs(own) : 0, radius, least);
+    wing_->return_from(n, *failsafe_, leg.to, is_px4() ? std::abs(own) : 0, radius, minimum);
     return;
   }
   if (is_px4() && wing_->low() < leg.to.low) {

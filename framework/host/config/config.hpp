@@ -39,7 +39,7 @@ struct Config {
   bool is_only_judged = false;
   std::vector<LonLat> about;  ///< positions of the mission that is judged
 
-  /// What routes have least of: the pipeline's objective, else the scenario's; null: length.
+  /// What routes minimise: the pipeline's objective, else the scenario's; null: length.
   const ObjectiveEntry* objective() const;
 };
 

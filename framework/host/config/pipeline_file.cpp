@@ -75,7 +75,7 @@ void PipelineFile::describe(Fields& f) {
   f("plugins", plugins).doc("additional folders of plugin libraries");
   f("constraints", constraints).doc("constraints on routes and tracks");
   f("objective", objective)
-      .doc("what routes have least of, instead of the scenario's objective; default: that");
+      .doc("what routes minimise, instead of the scenario's objective; default: that");
   f("metrics", metrics).doc("objectives that routes are measured by, besides the scenario's");
   f("steps", steps).min_items(1).required().doc("steps, run in order");
 }

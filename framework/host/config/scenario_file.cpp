@@ -17,7 +17,7 @@ void ConstraintEntry::describe(Fields& f) {
 }
 
 void ObjectiveEntry::describe(Fields& f) {
-  f.plugin("objective", plugin, parameters).doc("what routes have least of").required();
+  f.plugin("objective", plugin, parameters).doc("what routes minimise").required();
 }
 
 void MetricEntry::describe(Fields& f) {
@@ -262,9 +262,9 @@ void HoverEntry::describe(Fields& f) {
 void AeroplaneEntry::describe(Fields& f) {
   describe_mass(f, mass_kg);
   f("wing_m2", wing_m2).unit("m2").greater_than(0).required().doc("area of the wing");
-  f("cd0", cd0).greater_than(0).required().doc("least drag coefficient");
+  f("cd0", cd0).greater_than(0).required().doc("minimum drag coefficient");
   f("k", k).greater_than(0).required().doc("drag coefficient by the square of the lift's");
-  f("cl_min_drag", cl_of_least_drag).range(-2, 2).doc("lift coefficient of the least drag");
+  f("cl_min_drag", cl_of_min_drag).range(-2, 2).doc("lift coefficient of minimum drag");
   f("cl_max", cl_max).range(0.1, 5).doc("lift coefficient at which it stalls");
   describe_efficiency(f, efficiency, "of propeller, motor and controller together");
 }
@@ -510,7 +510,7 @@ void ScenarioFile::describe(Fields& f) {
   f("events", events).doc("changes during the flight");
   f("constraints", constraints).doc("constraints that apply to every pipeline");
   f("objective", objective)
-      .doc("what routes have least of, unless the pipeline says so; default: length");
+      .doc("what routes minimise, unless the pipeline says so; default: length");
   f("metrics", metrics).doc("objectives that routes are measured by");
 }
 }  // namespace altiplan::host

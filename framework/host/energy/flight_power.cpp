@@ -72,7 +72,7 @@ double PolarPower::at(double mps, double climb, double bank, double density) con
   if (!(cl <= cl_max)) {
     return kInfinity;
   }
-  const double off = cl - cl_of_least_drag;
+  const double off = cl - cl_of_min_drag;
   const double drag = pressure_area * (cd0 + k * off * off);
   return std::max(0.0, drag * mps + weight * mps * std::sin(climb)) / efficiency;
 }

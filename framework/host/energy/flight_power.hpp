@@ -53,7 +53,7 @@ struct PolarPower : Power {
   double wing_m2 = 0;
   double cd0 = 0;
   double k = 0;
-  double cl_of_least_drag = 0;
+  double cl_of_min_drag = 0;
   double efficiency = 1;  ///< of propeller and motor
   double cl_max = kInfinity;
 

@@ -249,18 +249,18 @@ class FenceFit {
       }
     }
     while (!fits()) {
-      std::size_t least = 0;
+      std::size_t smallest = 0;
       std::size_t joined = 0;
       for (std::size_t n = 0; n < pieces_.size(); ++n) {
-        least = growth_of(n) < growth_of(least) ? n : least;
+        smallest = growth_of(n) < growth_of(smallest) ? n : smallest;
         joined = joint_of(n).area < joint_of(joined).area ? n : joined;
       }
-      if (joint_of(joined).area < growth_of(least)) {
+      if (joint_of(joined).area < growth_of(smallest)) {
         join(joined);
-      } else if (std::isfinite(growth_of(least))) {
-        grown_m2_ += growth_of(least);
-        pieces_[least].ring.grow();
-        forget_joints(least);
+      } else if (std::isfinite(growth_of(smallest))) {
+        grown_m2_ += growth_of(smallest);
+        pieces_[smallest].ring.grow();
+        forget_joints(smallest);
       } else {
         return;
       }

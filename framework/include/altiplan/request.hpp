@@ -39,7 +39,7 @@ struct ALTIPLAN_API Request {
   Wind wind;
   Limits limits;
   std::vector<NamedConstraint> constraints;
-  std::shared_ptr<const Objective> objective;  ///< what routes have least of; null: length
+  std::shared_ptr<const Objective> objective;  ///< what routes minimise; null: length
   Box volume;                                  ///< bounded
   std::optional<double> level_m;               ///< level flight: z of every waypoint
   Budget budget;

@@ -148,8 +148,8 @@ class Accelerated {
       const double passes = i > 0 ? passing_speed(route.leg(i - 1), leg, acceleration_) : 0;
       for (Stretch& stretch : stretches_of(leg, request)) {
         if (leg.turns()) {  // not faster than its radius allows
-          const double most = std::sqrt(acceleration_.mps2 * leg.radius);
-          stretch.phase.seconds = std::max(stretch.phase.seconds, stretch.metres / most);
+          const double maximum = std::sqrt(acceleration_.mps2 * leg.radius);
+          stretch.phase.seconds = std::max(stretch.phase.seconds, stretch.metres / maximum);
         }
         const bool begins_leg = stretches_.empty() || stretches_.back().ends_leg;
         const double before = stretches_.empty() ? 0 : stretches_.back().top_mps();

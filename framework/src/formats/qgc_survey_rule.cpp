@@ -269,13 +269,13 @@ std::vector<SurveyCommand> survey_commands(const QgcSurvey& survey, SurveyPlane 
 
 namespace {
 /// Area of a polygon within a half plane's intersection, by clipping (Sutherland and Hodgman).
-std::vector<East> clipped(const std::vector<East>& polygon, double nx, double ny, double most) {
+std::vector<East> clipped(const std::vector<East>& polygon, double nx, double ny, double maximum) {
   std::vector<East> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const East& p = polygon[i];
     const East& q = polygon[(i + 1) % polygon.size()];
-    const double dp = nx * p.x + ny * p.y - most;
-    const double dq = nx * q.x + ny * q.y - most;
+    const double dp = nx * p.x + ny * p.y - maximum;
+    const double dq = nx * q.x + ny * q.y - maximum;
     if (dp <= 0) {
       kept.push_back(p);
     }

@@ -245,9 +245,9 @@ Box rectangle_in(const View& view, const Vec3& middle, double reach) {
     }
     return true;
   };
-  const auto longest = [&](double most, const auto& grown) {
+  const auto longest = [&](double maximum, const auto& grown) {
     double low = 0;
-    for (double high = most; high - low > 1e-3 * (1 + low);) {
+    for (double high = maximum; high - low > 1e-3 * (1 + low);) {
       const double length = (low + high) / 2;
       (is_covered(grown(length)) ? low : high) = length;
     }

@@ -99,16 +99,16 @@ class FlightEnergy final : public Objective {
     if (!std::isfinite(up) || !std::isfinite(down)) {
       return 0;
     }
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (int i = vehicle.wing ? kSteps : 0; i <= kSteps; ++i) {
       for (int k = 0; k <= kSteps; ++k) {
         for (const double height_m : {0.0, 9000.0}) {
           const double climb = -down + (up + down) * k / kSteps;
-          least = std::min(least, power.watts({fast * i / kSteps, climb, 0, height_m}));
+          minimum = std::min(minimum, power.watts({fast * i / kSteps, climb, 0, height_m}));
         }
       }
     }
-    return std::isfinite(least) ? kBetween * least : 0;
+    return std::isfinite(minimum) ? kBetween * minimum : 0;
   }
 
   std::shared_ptr<const Power> power_;

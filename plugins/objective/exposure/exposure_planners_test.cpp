@@ -109,20 +109,20 @@ void hold_to_dijkstra(int first, int worlds) {
     if (impossible_ends(request)) {
       continue;
     }
-    const double least = dijkstra(request);
+    const double minimum = dijkstra(request);
     for (const char* planner : {"astar", "bidirectional_astar"}) {
       for (const char* more : {"", ", heuristic: zero", ", anytime: true",
                                ", state: cell_and_heading, max_memory_mb: 64"}) {
         SCOPED_TRACE(std::to_string(world) + " " + planner + more);
         const PlanResult result =
             make_planner(planner, "{cell_m: [10, 10, 10]" + std::string(more) + "}")->plan(request);
-        if (least == kInfinity) {
+        if (minimum == kInfinity) {
           EXPECT_EQ(result.status, PlanStatus::no_route) << result.message;
           continue;
         }
         ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
         const double cost = cost_of(result.route, request);
-        EXPECT_NEAR(cost, least, 1e-7 * least);
+        EXPECT_NEAR(cost, minimum, 1e-7 * minimum);
         EXPECT_LE(min_cost(request), cost * (1 + 1e-9));
         EXPECT_TRUE(check(result.route, request).ok());
         ++solved;
@@ -143,7 +143,7 @@ TEST(Objectives, OtherPlannersKeepTheBoundAndApproachIt) {
     if (impossible_ends(request) || !request.objective) {
       continue;
     }
-    const double least = dijkstra(request);
+    const double minimum = dijkstra(request);
     for (const char* planner : {"theta_star", "lazy_theta_star", "rrt_star", "informed_rrt_star"}) {
       SCOPED_TRACE(std::to_string(world) + " " + planner);
       const bool by_cells = std::string(planner).ends_with("theta_star");
@@ -151,14 +151,14 @@ TEST(Objectives, OtherPlannersKeepTheBoundAndApproachIt) {
           make_planner(planner, by_cells ? "{cell_m: [10, 10, 10]}" : "{max_iterations: 3000}")
               ->plan(request);
       if (result.status != PlanStatus::solved) {
-        EXPECT_TRUE(least == kInfinity || !by_cells) << result.message;
+        EXPECT_TRUE(minimum == kInfinity || !by_cells) << result.message;
         continue;
       }
       ++solved;
       EXPECT_TRUE(check(result.route, request).ok());
       const double cost = cost_of(result.route, request);
       EXPECT_LE(min_cost(request), cost * (1 + 1e-9));
-      EXPECT_LE(cost, 2 * least + 1);
+      EXPECT_LE(cost, 2 * minimum + 1);
     }
   }
   EXPECT_GT(solved, 60);

@@ -163,19 +163,19 @@ void hold_to_exhaustive(int first, int worlds) {
     const double maximum = cost_of(without.route, by) * (0.3 + 0.7 * random.uniform());
     apply_constraints(request, {{"limit", std::make_shared<TotalLimit>(of, maximum)}},
                       AppliesTo::route);
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (const auto& [cost, total] : front) {
-      least = costs_more(total, maximum) ? least : std::min(least, cost);
+      minimum = costs_more(total, maximum) ? minimum : std::min(minimum, cost);
     }
     const PlanResult result = planner->plan(request);
-    if (least == kInfinity) {
+    if (minimum == kInfinity) {
       EXPECT_EQ(result.status, PlanStatus::no_route) << result.message;
       EXPECT_TRUE(result.proved);
       ++refused;
       continue;
     }
     ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
-    EXPECT_NEAR(cost_of(result.route, request), least, 1e-9 * least);
+    EXPECT_NEAR(cost_of(result.route, request), minimum, 1e-9 * minimum);
     EXPECT_TRUE(check(result.route, request).ok());
     // What it finds without the limit is refused by the judge alone.
     const CheckResult judged = check(without.route, request);

@@ -35,7 +35,8 @@ class Columns {
       }
     }
     for (int k = 0; k < 9; ++k) {
-      steps_[std::size_t(k)] = through_air(Vec3(1 - k % 3, 1 - k / 3, 0) * cell_);
+      const int row = k / 3;
+      steps_[std::size_t(k)] = through_air(Vec3(1 - k % 3, 1 - row, 0) * cell_);
     }
   }
 
@@ -158,7 +159,8 @@ class Columns {
   /// several winds differs by direction.
   double to_start(int column) const {
     const double x = column % nx_ - start_ % nx_;
-    const double y = column / nx_ - start_ / nx_;
+    const int rows = column / nx_ - start_ / nx_;
+    const double y = rows;
     const double longer = std::max(std::abs(x), std::abs(y));
     const double shorter = std::min(std::abs(x), std::abs(y));
     if (request_.wind.is_calm()) {
@@ -254,7 +256,8 @@ class Columns {
 
   /// At no height.
   Vec3 centre(int column) const {
-    return min_ + Vec3(column % nx_ + 0.5, column / nx_ + 0.5, 0) * cell_;
+    const int row = column / nx_;
+    return min_ + Vec3(column % nx_ + 0.5, row + 0.5, 0) * cell_;
   }
 
   bool is_flyable(int column) const {

@@ -32,7 +32,9 @@ struct Params {
     f("radius_m", radius_m)
         .unit("m")
         .greater_than(0)
-        .doc("radius of turns; auto: the least that vehicle and constraints allow, else one cell");
+        .doc(
+            "radius of turns; auto: the smallest that vehicle and constraints allow, else one "
+            "cell");
     f("cell_m", cell_m)
         .unit("m")
         .greater_than(0)

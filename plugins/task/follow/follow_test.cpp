@@ -18,11 +18,11 @@ Request copter() {
 
 /// Distance of a place from the line, seen from above.
 double away(const Vec3& p, const Polyline& line) {
-  double least = kInfinity;
+  double minimum = kInfinity;
   for (std::size_t i = 1; i < line.size(); ++i) {
-    least = std::min(least, point_leg_distance({p.x(), p.y(), 0}, line[i - 1], line[i]));
+    minimum = std::min(minimum, point_leg_distance({p.x(), p.y(), 0}, line[i - 1], line[i]));
   }
-  return least;
+  return minimum;
 }
 
 TEST(Follow, KeepsItsDistanceBesideTheLine) {

@@ -65,19 +65,19 @@ Times times_between(const std::vector<Vec3>& stops, const std::optional<Vec3>& s
 std::vector<std::size_t> exact_order(const Times& times) {
   const std::size_t n = times.stops;
   const std::size_t sets = std::size_t{1} << n;
-  std::vector<double> least(sets * n, kInfinity);
+  std::vector<double> minimum(sets * n, kInfinity);
   std::vector<std::size_t> before(sets * n, n);
   for (std::size_t i = 0; i < n; ++i) {
-    least[(std::size_t{1} << i) * n + i] = times(times.start(), i);
+    minimum[(std::size_t{1} << i) * n + i] = times(times.start(), i);
   }
   for (std::size_t set = 1; set < sets; ++set) {
     for (std::size_t last = 0; last < n; ++last) {
-      const double so_far = least[set * n + last];
+      const double so_far = minimum[set * n + last];
       for (std::size_t next = 0; next < n && so_far < kInfinity; ++next) {
         const std::size_t bit = std::size_t{1} << next;
         const std::size_t at = (set | bit) * n + next;
-        if ((set & bit) == 0 && so_far + times(last, next) < least[at]) {
-          least[at] = so_far + times(last, next);
+        if ((set & bit) == 0 && so_far + times(last, next) < minimum[at]) {
+          minimum[at] = so_far + times(last, next);
           before[at] = last;
         }
       }
@@ -86,7 +86,7 @@ std::vector<std::size_t> exact_order(const Times& times) {
   std::size_t set = sets - 1;
   std::size_t last = 0;
   for (std::size_t i = 1; i < n; ++i) {
-    const auto whole = [&](std::size_t k) { return least[set * n + k] + times(k, times.goal()); };
+    const auto whole = [&](std::size_t k) { return minimum[set * n + k] + times(k, times.goal()); };
     last = whole(i) < whole(last) ? i : last;
   }
   std::vector<std::size_t> order;

@@ -48,7 +48,7 @@ double seconds(const std::vector<Vec3>& order, const TaskEnds& ends, bool closed
 }
 
 /// Of all orders.
-double least(std::vector<Vec3> stops, const TaskEnds& ends, bool closed) {
+double minimum(std::vector<Vec3> stops, const TaskEnds& ends, bool closed) {
   const auto less = [](const Vec3& a, const Vec3& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   };
@@ -70,7 +70,7 @@ TEST(Visit, FindsTheOrderThatBruteForceFinds) {
       for (const TaskEnds& ends : {TaskEnds{}, depot, across}) {
         const TaskOrder order = task->order(copter(), ends);
         ASSERT_EQ(order.passes.size(), stops.size());
-        EXPECT_NEAR(order.time_s, least(stops, ends, closed && !ends.goal), 1e-4);
+        EXPECT_NEAR(order.time_s, minimum(stops, ends, closed && !ends.goal), 1e-4);
         EXPECT_NEAR(order.bound_s, order.time_s, 1e-9);
         std::vector<Vec3> flown;
         for (const Pass& pass : order.passes) {

@@ -150,7 +150,7 @@ void add_any_angle(Subcommands& all) {
   map->add_option("--limit", arguments->limit,
                   "maximum number of queries, evenly from the shortest to the longest")
       ->check(CLI::PositiveNumber);
-  map->add_option("--least-cells", arguments->min_cells,
+  map->add_option("--min-cells", arguments->min_cells,
                   "minimum distance of start and goal (cells)");
   map->add_flag("--each", arguments->each,
                 "answer each query with the first planner as it is read, --passes times: prints "

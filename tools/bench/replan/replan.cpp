@@ -267,7 +267,7 @@ void time_all(Json& figures, host::Registry& registry, const std::string& name,
                                   {"repair_ms", median(row.repair_ms)},
                                   {"ratio", median(row.ratio)},
                                   {"min_tenth", quantile(row.ratio, 0.1)},
-                                  {"least", quantile(row.ratio, 0)},
+                                  {"minimum", quantile(row.ratio, 0)},
                                   {"expanded", median(row.expanded)},
                                   {"of_first_plan", median(row.share)}});
   }

@@ -70,15 +70,15 @@ class TangentGraph {
 
   /// Least distance of the shortest path to the centre of disc k.
   double distance(int k) const {
-    double least = kInfinity;
+    double minimum = kInfinity;
     for (int at = kGoal; contacts_[at].from >= 0; at = contacts_[at].from) {
       const Contact& a = contacts_[contacts_[at].from];
       const Contact& b = contacts_[at];
-      least =
-          std::min(least, is_arc(a, b) ? arc_distance(a, b, k)
-                                       : plane_distance(discs_[std::size_t(k)].centre, a.at, b.at));
+      minimum = std::min(minimum, is_arc(a, b)
+                                      ? arc_distance(a, b, k)
+                                      : plane_distance(discs_[std::size_t(k)].centre, a.at, b.at));
     }
-    return least;
+    return minimum;
   }
 
   /// Adds the discs that the shortest path's tangents enter; true if there are any.
@@ -272,15 +272,15 @@ double least_with_fees(const Vec3& from, const Vec3& to, const DiscFees& fees, d
   for (int n = 0; n < max_boxes; ++n) {
     // The path of the lower distances pays what the box is bounded by, but where it comes nearer to
     // a disc than the upper one: there the box is divided.
-    const Box least = boxes.top();
+    const Box lowest = boxes.top();
     std::size_t worst = count;
-    double most = 0;
+    double maximum = 0;
     double unpaid = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      const double its = std::max(0.0, least.high[k] - least.at[k]);
+      const double its = std::max(0.0, lowest.high[k] - lowest.at[k]);
       unpaid += weight * its;
-      if (its > most) {
-        most = its;
+      if (its > maximum) {
+        maximum = its;
         worst = k;
       }
     }
@@ -288,11 +288,11 @@ double least_with_fees(const Vec3& from, const Vec3& to, const DiscFees& fees, d
       break;
     }
     boxes.pop();
-    const double middle = least.high[worst] - most / 2;
-    Box near = least;
+    const double middle = lowest.high[worst] - maximum / 2;
+    Box near = lowest;
     near.high[worst] = middle;
     boxes.push(bounded(std::move(near)));
-    Box far = least;
+    Box far = lowest;
     far.low[worst] = middle;
     boxes.push(bounded(std::move(far)));
   }

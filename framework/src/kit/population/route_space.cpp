@@ -28,7 +28,7 @@ void RouteSpaceParams::describe(Fields& f) {
           "distances of start and goal");
   f("above_ground_m", above_ground_m)
       .unit("m")
-      .doc("least and greatest height of waypoints above ground; default: anywhere in the volume");
+      .doc("minimum and maximum height of waypoints above ground; default: anywhere in the volume");
   f.check(!above_ground_m || (*above_ground_m)[0] <= (*above_ground_m)[1],
           "above_ground_m: expected the lower height first");
 }

@@ -23,7 +23,7 @@ struct SteeringParams {
     f("radius_m", radius_m)
         .unit("m")
         .greater_than(0)
-        .doc("radius of turns; auto: the least that vehicle and constraints allow");
+        .doc("radius of turns; auto: the smallest that vehicle and constraints allow");
   }
 
   /// The turn radius to steer with, metres; 0: straight legs.

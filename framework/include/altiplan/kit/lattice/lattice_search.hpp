@@ -336,9 +336,9 @@ class LatticeSearch {
   /// rounding of a sum.
   double quantum() const {
     if (request_.objective) {  // in its unit, of which nothing is known
-      const double least = to_goal_.at_least(start_);
+      const double minimum = to_goal_.at_least(start_);
       const double straight = costs_.leg(start_, goal_, 0);
-      return least > 0                              ? least * 1e-12
+      return minimum > 0                            ? minimum * 1e-12
              : straight > 0 && straight < kInfinity ? straight * 1e-15
                                                     : 1e-100;
     }
