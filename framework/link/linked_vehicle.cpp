@@ -17,8 +17,6 @@ using host::VehicleLost;
 constexpr Time kLostAfter{5000};
 /// Longer than a heartbeat takes to report a mode that has just been changed.
 constexpr Time kStrange{1500};
-/// Without a position, or the item that it flies to, the vehicle is asked to send them.
-constexpr Time kAskForReports{1500};
 /// Of the guardian, between set-points.
 constexpr Time kPatience{3000};
 constexpr double kWindow = 20;  ///< metres that progress may exceed twice the distance flown
@@ -77,32 +75,13 @@ void LinkedVehicle::await_nearest(const Vec3& start) {
 }
 
 void LinkedVehicle::await_position() {
-  if (flight_.command) {
-    ask_for_reports();  // as often as commands are
-  }
-  constexpr int kTries = 3;  // not every vehicle reports its item
-  Time ask_at = began_ + kAskForReports;
-  for (int n = 0; !feed_.has_position() || (!feed_.current_item() && n < kTries);) {
-    if (stop_.stop_requested()) {
-      return;
-    }
+  constexpr Time kNoItem{4500};  // not every vehicle reports its item
+  feed_.expect_reports(flight_.command);
+  while (!stop_.stop_requested() &&
+         (!feed_.has_position() || (!feed_.current_item() && time_now() < began_ + kNoItem))) {
     expect_in_reach();
     feed_.next(kReceiveSlice);
-    if (time_now() >= ask_at) {
-      ask_for_reports();
-      ask_at += kAskForReports;
-      ++n;
-    }
   }
-}
-
-void LinkedVehicle::ask_for_reports() {
-  const auto ask = [&](std::uint32_t message, float period_us) {
-    feed_.send(command_to(feed_.vehicle(), VehicleCommand::kSetMessageInterval, float(message),
-                          period_us));
-  };
-  ask(GlobalPositionInt::kDeclared.id, 1e5F);
-  ask(MissionCurrent::kDeclared.id, 5e5F);
 }
 
 bool LinkedVehicle::flies_route() const {

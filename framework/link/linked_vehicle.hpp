@@ -57,7 +57,6 @@ class LinkedVehicle final : public host::FlownVehicle {
 
   // The begin of the mission.
   void await_position();
-  void ask_for_reports();
   void start_mission();
   /// Of a start that failed: holds in the air, or disarms on the ground.
   void undo_start();

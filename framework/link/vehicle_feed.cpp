@@ -1,17 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "link/vehicle_feed.hpp"
 
+#include <algorithm>
+
 #include "link/terrain_answer.hpp"
 #include "link/vehicle_words.hpp"
 
 namespace altiplan::link {
+namespace {
+
+/// The same report is not asked for again before this.
+constexpr Time kAskForReport{1500};
+}  // namespace
+
+void VehicleFeed::expect_reports(bool to_command) {
+  const Time first = time_now() + (to_command ? Time{0} : kAskForReport);
+  reports_ = {{GlobalPositionInt::kDeclared.id, Time{100}, to_command ? Time{500} : kAskForReport,
+               first},
+              {MissionCurrent::kDeclared.id, Time{500}, kAskForReport, first}};
+}
+
+void VehicleFeed::ask_for_late_reports() {
+  const Time now = time_now();
+  for (Report& report : reports_) {
+    if (now >= report.due) {
+      const float period_us = 1e3F * float(report.period.count());
+      send(command_to(vehicle_, VehicleCommand::kSetMessageInterval, float(report.message),
+                      period_us));
+      report.asked = now;
+      report.due = now + kAskForReport;
+    }
+  }
+}
+
+void VehicleFeed::has_come(std::uint32_t message) {
+  for (Report& report : reports_) {
+    if (report.message == message) {
+      report.due = std::max(time_now() + report.late, report.asked + kAskForReport);
+    }
+  }
+}
 
 std::optional<State> VehicleFeed::next(Time wait) {
+  ask_for_late_reports();
   const std::optional<Packet> packet = link_.receive(wait);
   if (!packet || !(packet->sender == vehicle_.address)) {
     return std::nullopt;
   }
   if (const auto* position = std::get_if<GlobalPositionInt>(&packet->message)) {
+    has_come(GlobalPositionInt::kDeclared.id);
     return take(*position);
   }
   take(packet->message);
@@ -24,6 +61,7 @@ void VehicleFeed::take(const Message& message) {
     mode_ = mode_of(*heartbeat);
     ++heartbeats_;
   } else if (const auto* current = std::get_if<MissionCurrent>(&message)) {
+    has_come(MissionCurrent::kDeclared.id);
     current_item_ = current->seq;
     mission_ = {current->mission_id, current->total};
     first_mission_ = first_mission_.value_or(*mission_);

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "altiplan/request.hpp"
 #include "link/flight_mode.hpp"
@@ -21,6 +22,9 @@ class VehicleFeed {
   VehicleFeed(Link& link, const Vehicle& vehicle, const World& world)
       : link_(link), vehicle_(vehicle), world_(world) {}
 
+  /// From now on asks for positions and the mission's item where they come late, until they come:
+  /// what is asked gets lost, too. To command the vehicle, at once, and for positions more often.
+  void expect_reports(bool to_command);
   /// Takes what arrives within the time; the new state if it is a position, later than the last.
   std::optional<State> next(Time wait);
   /// The present position becomes the one at that time.
@@ -54,12 +58,23 @@ class VehicleFeed {
   void set_item(int item);
 
  private:
+  /// What the vehicle is to send by itself each `period`.
+  struct Report {
+    std::uint32_t message;
+    Time period;
+    Time late;  ///< more than a few lost packets explain
+    Time due;
+    Time asked{0};
+  };
+  void ask_for_late_reports();
+  void has_come(std::uint32_t message);
   void take(const Message& message);
   std::optional<State> take(const GlobalPositionInt& position);
 
   Link& link_;
   Vehicle vehicle_;
   const World& world_;
+  std::vector<Report> reports_;
   FlightMode mode_ = FlightMode::other;
   int heartbeats_ = 0;
   std::optional<int> current_item_;

@@ -152,6 +152,23 @@ class Begun(Fly):
         self.assertIn("does not answer the command to start its mission", flight["message"])
         self.assertTrue(vehicle.wait(lambda: vehicle.modes()[-1] == "HOLD", 5))
 
+    def test_reports_are_asked_for_until_they_come(self):
+        """ArduCopter sends none unasked, and ArduPlane too few to command it by."""
+        def lose(message, count):
+            return {"fault": "lose", "direction": "in", "message": "COMMAND_LONG", "command": 511,
+                    "param1": message, "count": count}
+        faults = [lose(42, 3), {"fault": "lose", "message": "MISSION_ITEM_REACHED"}]
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--faults", json.dumps(faults))
+        code, flight, out = self.fly(self.planned(pilot="route"), vehicle, *TAKEOFF, "--arm")
+        self.expect_flown(code, flight, out)
+
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--type", "plane", "--faults",
+                               json.dumps([lose(33, 1)]), speedup=1)
+        self.flying(self.planned("plane", pop_up=True), vehicle, "--command")
+        self.assertTrue(vehicle.wait(lambda: len([
+            entry for entry in vehicle.log("sent")
+            if entry["message"] == "GLOBAL_POSITION_INT"]) > 40, 8))
+
     def test_without_arm_nothing_is_commanded(self):
         vehicle = self.vehicle("--autopilot", "ardupilot")
         process = self.flying(self.planned(), vehicle, *TAKEOFF, "--command")

@@ -14,7 +14,7 @@
   direction    in (to the vehicle) | out | both (of packets: both, else in)
   message      a name or a list of names; none: any
   kind         only messages of this mission_type; `seq`: only of this item, `command`: only of
-               this MAV_CMD
+               this MAV_CMD, `param1`: only with this number
   from, until  s since the script began; a silence, reboot, disarm or switch without `message`
                happens at `from`
   skip, count  the first `skip` matches pass, then at most `count` are met
@@ -33,7 +33,7 @@ from constants import MissionResult
 
 PACKET_FAULTS = ("lose", "double", "delay", "reorder", "damage")
 EVENTS = ("silence", "reboot", "disarm", "switch")
-FIELDS = {"kind": "mission_type", "seq": "seq", "command": "command"}
+FIELDS = {"kind": "mission_type", "seq": "seq", "command": "command", "param1": "param1"}
 KEYS = {"fault", "direction", "message", *FIELDS, "from", "until", "skip", "count",
         "probability", "seconds", "result", "loses_plans", "round_altitude", "shift_lat",
         "drop_command", "refuse_frame", "infeasible", "mode"}
