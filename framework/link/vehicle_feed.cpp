@@ -15,9 +15,9 @@ constexpr Time kAskForReport{1500};
 
 void VehicleFeed::expect_reports(bool to_command) {
   const Time first = time_now() + (to_command ? Time{0} : kAskForReport);
-  reports_ = {{GlobalPositionInt::kDeclared.id, Time{100}, to_command ? Time{500} : kAskForReport,
-               first},
-              {MissionCurrent::kDeclared.id, Time{500}, kAskForReport, first}};
+  reports_ = {
+      {GlobalPositionInt::kDeclared.id, Time{100}, to_command ? Time{500} : kAskForReport, first},
+      {MissionCurrent::kDeclared.id, Time{500}, kAskForReport, first}};
 }
 
 void VehicleFeed::ask_for_late_reports() {

@@ -121,6 +121,23 @@ TEST(LinkPlanTransfer, AFenceIsWrittenAsItWasRead) {
   EXPECT_NE(host::plan_text(plan).find("46.25"), std::string::npos);
 }
 
+TEST(LinkPlanTransfer, ARallyPointIsWrittenAboveHome) {
+  host::Plan plan;
+  plan.items = three_items();
+  plan.home = formats::MissionPoint{9, 46, 400};
+  PlanItem point{Command::kRallyPoint};
+  point.params = {0, 0, 0, 0, 46.25, 9.25, 600};
+  for (const auto& [frame, height] : {std::pair(0, 200.0), std::pair(3, 600.0)}) {
+    point.frame = frame;
+    plan.rally = {point};
+    const formats::MissionFile file = formats::read_mission("d.plan", host::plan_text(plan));
+    ASSERT_EQ(file.rally.size(), 1U);
+    EXPECT_EQ(file.rally[0].altitude_m, height) << frame;
+  }
+  plan.rally.front().frame = 10;
+  EXPECT_THROW(host::plan_text(plan), Error);
+}
+
 /// Missions of other programs go up and come back item by item, on a link that loses packets.
 TEST(LinkPlanTransfer, MissionsOfOtherProgramsComeBackEqual) {
   const std::filesystem::path folder = folders::source() / "../shared/data/missions";

@@ -85,14 +85,6 @@ SortedJson fence_json(const std::vector<PlanItem>& fence) {
   return {{"circles", circles}, {"polygons", polygons}, {"version", 2}};
 }
 
-SortedJson rally_json(const std::vector<PlanItem>& rally) {
-  SortedJson points = SortedJson::array();
-  for (const PlanItem& item : rally) {
-    points.push_back({item.params[4], item.params[5], item.params[6]});
-  }
-  return {{"points", points}, {"version", 2}};
-}
-
 /// Ground stations need a home: without one it is below the first waypoint, at sea level.
 formats::MissionPoint home_of(const Plan& plan) {
   if (plan.home || plan.items.empty()) {
@@ -100,6 +92,26 @@ formats::MissionPoint home_of(const Plan& plan) {
   }
   const PlanItem& first = plan.items.front();
   return {first.params[5], first.params[4], 0};
+}
+
+/// QGroundControl has rally points above home alone.
+SortedJson rally_json(const Plan& plan) {
+  constexpr int kAboveSea = 0;
+  constexpr int kAboveHome = 3;
+  SortedJson points = SortedJson::array();
+  for (const PlanItem& item : plan.rally) {
+    if (item.frame != kAboveSea && item.frame != kAboveHome) {
+      throw Error("rally point " + std::to_string(points.size() + 1) +
+                  " is above the ground (frame " + std::to_string(item.frame) +
+                  "), and a .plan has rally points above home alone");
+    }
+    const double height =
+        item.frame == kAboveHome
+            ? item.params[6]
+            : rounded(item.params[6] - home_of(plan).altitude_m, plan.decimals.metres);
+    points.push_back({item.params[4], item.params[5], height});
+  }
+  return {{"points", points}, {"version", 2}};
 }
 
 /// A line of QGC WPL 110: twelve columns.
@@ -140,7 +152,7 @@ std::string plan_text(const Plan& plan) {
           rounded(home.altitude_m, decimals.metres)}},
         {"items", items}}},
       {"geoFence", fence_json(plan.fence)},
-      {"rallyPoints", rally_json(plan.rally)}};
+      {"rallyPoints", rally_json(plan)}};
   return json.dump(4, ' ', false, SortedJson::error_handler_t::replace) + "\n";
 }
 
