@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "link/linked_vehicle.hpp"
 
@@ -10,11 +11,18 @@ using host::RouteAhead;
 
 constexpr Time kAskAgain{500};
 constexpr int kMaxAsks = 10;
-constexpr double kSamePlace = 1e-3;  ///< metres
-constexpr double kLookahead = 2;     ///< seconds, of a multirotor along the route
-constexpr double kCircleAhead = 4;   ///< seconds to the circle that ends an aeroplane's set-point
-constexpr double kLevelling = 1;     ///< m/s, at most, back to a height that is to be kept
-constexpr double kBetween = 0.5;     ///< seconds between set-points that are commands of their own
+constexpr double kSamePlace = 1e-3;   ///< metres
+constexpr double kLookahead = 2;      ///< seconds, of a multirotor along the route
+constexpr double kCircleAhead = 4;    ///< seconds to the circle that ends an aeroplane's set-point
+constexpr double kLevelling = 1;      ///< m/s, at most, back to a height that is to be kept
+constexpr double kBetween = 0.5;      ///< seconds between set-points that are commands of their own
+constexpr double kTurnsWithin = 120;  ///< seconds of commands that are compared with the flight
+constexpr double kLeastShare = 0.1;   ///< of a circle asked for; slow autopilots fly a third
+
+/// Radians to the left, seen from above.
+double turn(const Vec3& from, const Vec3& to) {
+  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.x() * to.x() + from.y() * to.y());
+}
 }  // namespace
 
 std::optional<int> LinkedVehicle::item_at(const Vec3& waypoint) const {
@@ -79,6 +87,30 @@ SetPoint LinkedVehicle::toward(const Vec3& from, const Vec3& velocity, double he
   return wanted;
 }
 
+void LinkedVehicle::expect_turn(const State& from, const State& command, const State& flown) {
+  const auto& wing = request_->vehicle.wing;
+  if (!wing || !is_confirmed_) {
+    return;
+  }
+  const Vec3 way = command.position - from.position;
+  const double most = way.norm() / wing->turn_radius();
+  turns_.push_back({from.time_s, std::clamp(turn(from.velocity, way), -most, most),
+                    turn(from.velocity, flown.velocity)});
+  while (turns_.front().at_s < from.time_s - kTurnsWithin) {
+    turns_.pop_front();
+  }
+  double asked = 0;
+  double flown_so = 0;
+  for (const Turn& each : turns_) {
+    asked += each.asked;
+    flown_so += each.flown;
+  }
+  if (std::abs(asked) >= 2 * kPi && flown_so / asked < kLeastShare) {
+    give_up_in_hold("the vehicle does not turn as it is commanded: it is told to hold" +
+                    feed_.quoted_text());
+  }
+}
+
 void LinkedVehicle::take_command() {
   if (!flight_.command) {
     return;
@@ -88,6 +120,7 @@ void LinkedVehicle::take_command() {
     hands_back_ = is_confirmed_ = false;
     asks_ = 0;
     ask_at_ = Time(0);
+    turns_.clear();
   }
   is_confirmed_ = is_confirmed_ || feed_.mode() == FlightMode::commanded;
 }

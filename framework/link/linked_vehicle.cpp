@@ -257,10 +257,11 @@ FlownTo LinkedVehicle::go(RouteAhead& route, const State& from, const State& com
   const auto latency = VehicleFeed::Clock::now() - feed_.last_position();
   latencies_us_.push_back(std::chrono::duration_cast<std::chrono::microseconds>(latency).count());
   ++count_;
-  for (State last = from; last.time_s < command.time_s - kLengthTolerance;) {
+  State last = from;
+  while (last.time_s < command.time_s - kLengthTolerance) {
     const std::optional<State> now = next_position();
     if (!now || !report(*now)) {
-      break;
+      return FlownTo::on_the_way;
     }
     last = *now;
     if (host::passes_goal(route, *request_, last, false)) {
@@ -269,6 +270,7 @@ FlownTo LinkedVehicle::go(RouteAhead& route, const State& from, const State& com
     take_command();
     stream(wanted, last);
   }
+  expect_turn(from, command, last);
   return FlownTo::on_the_way;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <stop_token>
 #include <string>
@@ -88,6 +89,8 @@ class LinkedVehicle final : public host::FlownVehicle {
   /// the vehicle would drift from where it is reported.
   Vec3 commanded_velocity(const host::RouteAhead& route, const State& from, const State& command);
   SetPoint toward(const Vec3& from, const Vec3& velocity, double height) const;
+  /// Of an aeroplane: gives up, in hold, where it flies on and does not turn as it is told to.
+  void expect_turn(const State& from, const State& command, const State& flown);
   void take_command();
   void hand_back(int item);
   void ask(FlightMode mode);
@@ -113,7 +116,13 @@ class LinkedVehicle final : public host::FlownVehicle {
   Time ask_at_{0};
   int heartbeats_at_ask_ = 0;
   int asks_ = 0;
-  std::optional<double> height_;            ///< metres, of the last command of the pilot
+  std::optional<double> height_;  ///< metres, of the last command of the pilot
+  struct Turn {
+    double at_s;
+    double asked;  ///< radians, positive to the left
+    double flown;
+  };
+  std::deque<Turn> turns_;                  ///< of the last commands
   double streamed_s_ = 0;                   ///< time of the last set-point
   std::int64_t count_ = 0;                  ///< commands of the pilot
   std::vector<std::int64_t> latencies_us_;  ///< from the arrival of a position to its command

@@ -9,15 +9,17 @@
 namespace altiplan::link {
 namespace {
 
-/// The same report is not asked for again before this.
-constexpr Time kAskForReport{1500};
+/// Without commands, reports may be this late.
+constexpr Time kLateReport{1500};
+/// What is asked for is lost as often as what is reported.
+constexpr Time kAskReportAgain{500};
 }  // namespace
 
 void VehicleFeed::expect_reports(bool to_command) {
-  const Time first = time_now() + (to_command ? Time{0} : kAskForReport);
+  const Time first = time_now() + (to_command ? Time{0} : kLateReport);
   reports_ = {
-      {GlobalPositionInt::kDeclared.id, Time{100}, to_command ? Time{500} : kAskForReport, first},
-      {MissionCurrent::kDeclared.id, Time{500}, kAskForReport, first}};
+      {GlobalPositionInt::kDeclared.id, Time{100}, to_command ? Time{500} : kLateReport, first},
+      {MissionCurrent::kDeclared.id, Time{500}, kLateReport, first}};
 }
 
 void VehicleFeed::ask_for_late_reports() {
@@ -28,7 +30,7 @@ void VehicleFeed::ask_for_late_reports() {
       send(command_to(vehicle_, VehicleCommand::kSetMessageInterval, float(report.message),
                       period_us));
       report.asked = now;
-      report.due = now + kAskForReport;
+      report.due = now + kAskReportAgain;
     }
   }
 }
@@ -36,7 +38,7 @@ void VehicleFeed::ask_for_late_reports() {
 void VehicleFeed::has_come(std::uint32_t message) {
   for (Report& report : reports_) {
     if (report.message == message) {
-      report.due = std::max(time_now() + report.late, report.asked + kAskForReport);
+      report.due = std::max(time_now() + report.late, report.asked + kAskReportAgain);
     }
   }
 }

@@ -157,7 +157,7 @@ class Begun(Fly):
         def lose(message, count):
             return {"fault": "lose", "direction": "in", "message": "COMMAND_LONG", "command": 511,
                     "param1": message, "count": count}
-        faults = [lose(42, 3), {"fault": "lose", "message": "MISSION_ITEM_REACHED"}]
+        faults = [lose(33, 3), lose(42, 3), {"fault": "lose", "message": "MISSION_ITEM_REACHED"}]
         vehicle = self.vehicle("--autopilot", "ardupilot", "--faults", json.dumps(faults))
         code, flight, out = self.fly(self.planned(pilot="route"), vehicle, *TAKEOFF, "--arm")
         self.expect_flown(code, flight, out)
@@ -300,6 +300,17 @@ class Ended(Fly):
                 out, err = process.communicate(timeout=60)
                 self.assertEqual(process.returncode, 1, out + err)
                 self.assertIn("another program has replaced the vehicle's mission", out)
+
+    def test_an_aeroplane_that_does_not_turn_as_commanded(self):
+        """It accepts each set-point, and flies straight on: PX4's simulation did so once."""
+        vehicle = self.vehicle("--autopilot", "ardupilot", "--type", "plane", "--stiff-after",
+                               "10", speedup=SPEEDUP)
+        code, flight, out = self.fly(self.planned("plane", pop_up=True), vehicle, "--arm",
+                                     "--command")
+        self.assertEqual(code, 1, out)
+        self.assertIn("the vehicle does not turn as it is commanded", flight["message"])
+        self.assertLess(flight["track"][-1][0], 240)
+        self.assertEqual(vehicle.modes()[-1], "HOLD")
 
     def test_motors_that_stop_in_flight(self):
         """Also where it is too low for its pilot before a heartbeat says so."""

@@ -19,9 +19,11 @@ class Guided:
         self.pilot = pilot
         self.wanted = None  # Goal
         self.stamp = -math.inf  # of the last set-point, flight time
+        self.entered_at = -math.inf
         self.offboard = None  # the goal that the stream asks for, before and in OFFBOARD
 
     def enter(self):
+        self.entered_at = self.pilot.time
         self.wanted = self.offboard if self.pilot.flavour.stream_needed else None
         self.wanted = self.wanted or self.pilot.body.stop_here()
 

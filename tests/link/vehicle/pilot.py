@@ -30,6 +30,7 @@ class Pilot:
         self.body = airframe(self.home, math.radians(options.heading), options.wind_vector(),
                              self.parameters)
         self.ready_after, self.drift = options.ready_after, options.drift
+        self.stiff_after = options.stiff_after
         self.time = 0.0  # of flight simulation, s since boot
         self.booted_at = 0.0
         self.mode, self.armed, self.started = MANUAL, False, False
@@ -197,6 +198,8 @@ class Pilot:
             if self.drift and goal.kind == "velocity":
                 north, east, up = goal.velocity
                 goal = dataclasses.replace(goal, velocity=(north, east, up + self.drift))
+            if self.time > self.guided.entered_at + self.stiff_after and goal.target:
+                return Goal("takeoff", goal.target)  # straight on, at that height
             return goal
         if self.mode == TAKEOFF:
             return self.takeoff_goal()

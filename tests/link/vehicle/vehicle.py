@@ -101,6 +101,8 @@ def parser():
         help="a whole number is of an integer type")
     add("--drift", type=float, default=0.0, metavar="M/S",
         help="of a copter's height while velocities are commanded")
+    add("--stiff-after", type=float, default=math.inf, metavar="S",
+        help="of commands: an aeroplane keeps its course, whatever it is told")
     add("--terrain", action="store_true", help="asks for terrain")
     add("--terrain-spacing", type=int, default=100, metavar="M")
     add("--seed", type=int, default=0)
