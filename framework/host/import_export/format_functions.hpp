@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/import_export/mission_text.hpp"
+#include "host/import_export/route_csv.hpp"
 
 /// \file The writers and readers in the table of formats, each of which has a file of its own.
 namespace altiplan::host {
