@@ -113,14 +113,17 @@ class Vehicle(unittest.TestCase):
             self.assertEqual(code, 1, out + err)
             self.assertIn("the mission was judged as flown by ArduPilot copter, and the vehicle is", err)
             self.assertNotIn("uploaded, read back", out)
-        # A plan without zones over that fence.
-        for options, line in (((), "fence: the vehicle keeps one of 1 items"),
-                              (("--clear-fence",), "fence: 0 items uploaded, read back equal")):
+        # A plan without zones and rally points over those.
+        for options, lines in (((), ("fence: the vehicle keeps 1 items", "rally points: the vehicle keeps 1 items")),
+                               (("--clear-fence", "--clear-rally"),
+                                ("fence: 0 items uploaded, read back equal",
+                                 "rally points: 0 items uploaded, read back equal"))):
             code, out, err = altiplan("upload", self.result, "--to", address, *options)
             self.assertEqual(code, 0, out + err)
-            self.assertIn(line, out)
+            for line in lines:
+                self.assertIn(line, out)
         code, out, err = altiplan("upload", self.result, "--to", address)
-        self.assertEqual((code, "fence" in out), (0, False), out + err)
+        self.assertEqual((code, "fence" in out, "rally" in out), (0, False, False), out + err)
 
     def test_ardupilot_keeps_a_take_off_and_a_landing(self):
         for kind in ("copter", "plane"):

@@ -109,18 +109,18 @@ bool accepts_mission(Connection& connection) {
   return !stored.is_refused && !(stored.begins_elsewhere && stored.current);
 }
 
-/// Prints whether the vehicle still has a fence of an older plan.
-void tell_old_fence(Connection& connection) {
+/// Prints whether the vehicle still has a fence, or rally points, of an older plan.
+void tell_kept(Connection& connection, link::PlanType type, const std::string& cure) {
+  const std::string what = link::name(type);
   host::Plan held;
   try {
-    link::download(connection.link, connection.vehicle, link::PlanType::fence, held,
-                   connection.stop);
+    link::download(connection.link, connection.vehicle, type, held, connection.stop);
   } catch (const link::LinkError& error) {
-    std::cout << "fence: whether the vehicle has one is not known: " << error.what() << '\n';
+    std::cout << what << ": whether the vehicle has any is not known: " << error.what() << '\n';
   }
-  if (!held.fence.empty()) {
-    std::cout << "fence: the vehicle keeps one of " << held.fence.size()
-              << " items, which this plan has not: --clear-fence removes it\n";
+  if (const std::size_t count = held.fence.size() + held.rally.size(); count > 0) {
+    std::cout << what << ": the vehicle keeps " << count
+              << " items, which this plan has not: " << cure << '\n';
   }
 }
 
@@ -133,10 +133,13 @@ bool upload_plan(Connection& connection, const host::Plan& plan, const FenceOpti
   if (!fence.leave && (!plan.fence.empty() || fence.clear)) {
     is_equal = upload(connection, plan, link::PlanType::fence, plan.fence.size()) && is_equal;
   } else if (!fence.leave) {
-    tell_old_fence(connection);
+    tell_kept(connection, link::PlanType::fence, "--clear-fence removes it");
   }
-  if (!plan.rally.empty()) {
+  if (!plan.rally.empty() || fence.clear_rally) {
     is_equal = upload(connection, plan, link::PlanType::rally, plan.rally.size()) && is_equal;
+  } else {
+    tell_kept(connection, link::PlanType::rally,
+              "a return may lead to them; --clear-rally removes them");
   }
   return is_equal;
 }
@@ -149,5 +152,7 @@ void add_fence_options(App& command, FenceOptions& fence) {
       .add_flag("--clear-fence", fence.clear,
                 "remove the vehicle's fence where the scenario has no zones")
       ->excludes(leave);
+  command.add_flag("--clear-rally", fence.clear_rally,
+                   "remove the vehicle's rally points where the plan has none");
 }
 }  // namespace altiplan::cli

@@ -10,10 +10,11 @@ namespace altiplan::cli {
 
 /// The plan of a route as written; warns where MAVLink carries fewer decimals than it needs.
 host::Plan plan_to_upload(const host::Exported& written);
-/// What becomes of the vehicle's fence.
+/// What becomes of the vehicle's fence and rally points.
 struct FenceOptions {
   bool leave = false;
-  bool clear = false;  ///< where the plan has no zones
+  bool clear = false;        ///< where the plan has no zones
+  bool clear_rally = false;  ///< where the plan has no rally points
 };
 
 /// Prints what the vehicle's autopilot refuses of the mission, before it is uploaded.
@@ -23,8 +24,8 @@ bool is_judged_for(const link::Vehicle& vehicle, const formats::MissionFile& mis
                    const host::GateOptions& gate);
 
 /// Uploads the mission, the fence and the rally points, reads them back and prints what the vehicle
-/// changed, and a fence that it keeps. True if it holds what was sent.
+/// changed, and a fence or rally points that it keeps. True if it holds what was sent.
 bool upload_plan(Connection& connection, const host::Plan& plan, const FenceOptions& fence);
-/// Adds --no-fence and --clear-fence.
+/// Adds --no-fence, --clear-fence and --clear-rally.
 void add_fence_options(App& command, FenceOptions& fence);
 }  // namespace altiplan::cli
