@@ -20,12 +20,14 @@ using study::report::exact;
 
 /// The result of the paired test of the differences, now minus before, as the end of a sentence.
 /// The test uses ranks, so a few large differences can put the mean on the other side.
-std::string test_words(const std::vector<double>& differences) {
+std::string test_words(const std::vector<double>& differences, bool has_penalties) {
   const std::optional<study::Wilcoxon> test = study::wilcoxon(differences);
   if (!test) {
     return "no scenario differs";
   }
-  const std::string p = "Wilcoxon's signed-rank test: " + study::report::p_equals(test->p);
+  const std::string p = std::string("Wilcoxon's signed-rank test") +
+                        (has_penalties ? ", failures with the penalty: " : ": ") +
+                        study::report::p_equals(test->p);
   if (!(test->p < 0.05)) {
     return p + ", no significant difference";
   }
@@ -41,7 +43,17 @@ std::string test_words(const std::vector<double>& differences) {
                       : "better");
 }
 
-TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) {
+/// The test of the numbers of scenarios that only one of them solves.
+std::string success_words(std::size_t only_before, std::size_t only_now) {
+  const double p = study::mcnemar(std::int64_t(only_before), std::int64_t(only_now));
+  return "McNemar's test of success: " + study::report::p_equals(p) +
+         (!(p < 0.05)              ? ", no significant difference"
+          : only_now > only_before ? ", the tuned pipeline solves more"
+                                   : ", the tuned pipeline solves fewer");
+}
+
+TunedComparison compare(const TunePlan& plan, const Tuning& tuning, std::size_t from,
+                        std::size_t to) {
   TunedComparison comparison;
   std::vector<double> before;
   std::vector<double> now;
@@ -52,10 +64,15 @@ TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) 
     ++comparison.scenarios;
     comparison.failed_before += !first.value;
     comparison.failed_now += !second.value;
-    if (first.value && second.value) {
-      before.push_back(*first.value);
-      now.push_back(*second.value);
-      differences.push_back(*second.value - *first.value);
+    comparison.only_before += first.value && !second.value;
+    comparison.only_now += second.value && !first.value;
+    // A failure counts as in the score; both failing is no difference.
+    const std::optional<double> value_before = first.value ? first.value : plan.request.penalty;
+    const std::optional<double> value_now = second.value ? second.value : plan.request.penalty;
+    if (value_before && value_now) {
+      before.push_back(*value_before);
+      now.push_back(*value_now);
+      differences.push_back(*value_now - *value_before);
       comparison.better += differences.back() < 0;
       comparison.worse += differences.back() > 0;
       comparison.equal += differences.back() == 0;
@@ -70,11 +87,15 @@ TunedComparison compare(const Tuning& tuning, std::size_t from, std::size_t to) 
                      std::to_string(comparison.worse) + " and equal in " +
                      std::to_string(comparison.equal) + " of " +
                      counted(comparison.scenarios, "scenario");
-  if (comparison.failed_before + comparison.failed_now > 0) {
+  const bool has_failures = comparison.failed_before + comparison.failed_now > 0;
+  if (has_failures) {
     comparison.words += " (original fails in " + std::to_string(comparison.failed_before) +
-                        ", tuned in " + std::to_string(comparison.failed_now) + ")";
+                        ", tuned in " + std::to_string(comparison.failed_now) + "); " +
+                        success_words(comparison.only_before, comparison.only_now);
   }
-  comparison.words += differences.empty() ? "" : "; " + test_words(differences);
+  comparison.words += differences.empty()
+                          ? ""
+                          : "; " + test_words(differences, has_failures && plan.request.penalty);
   return comparison;
 }
 
@@ -85,6 +106,8 @@ host::Json json_of(const TunedComparison& comparison) {
   return {{"scenarios", comparison.scenarios},
           {"failed_as_it_is", comparison.failed_before},
           {"failed_tuned", comparison.failed_now},
+          {"only_as_it_is", comparison.only_before},
+          {"only_tuned", comparison.only_now},
           {"better", comparison.better},
           {"worse", comparison.worse},
           {"equal", comparison.equal},
@@ -184,8 +207,8 @@ std::string tuned_pipeline(const TunePlan& plan, const Tuning& tuning, const fs:
 
 TuneSummary summary_of(const TunePlan& plan, const Tuning& tuning) {
   TuneSummary summary;
-  summary.tuned_on = compare(tuning, 0, plan.tuned_on);
-  summary.held_back = compare(tuning, plan.tuned_on, plan.scenarios.size());
+  summary.tuned_on = compare(plan, tuning, 0, plan.tuned_on);
+  summary.held_back = compare(plan, tuning, plan.tuned_on, plan.scenarios.size());
   summary.evaluations = tuning.evaluations.size() - 1;
   double min_score = kInfinity;
   for (std::size_t i = 1; i < tuning.evaluations.size(); ++i) {

@@ -14,12 +14,15 @@ struct TunedComparison {
   std::size_t scenarios = 0;
   std::size_t failed_before = 0;  ///< of the original pipeline
   std::size_t failed_now = 0;
-  std::size_t better = 0;  ///< scenarios that both solved, by the metric
+  std::size_t only_before = 0;  ///< scenarios that only the original solves
+  std::size_t only_now = 0;
+  /// Scenarios that both solved, by the metric; with a penalty all, a failure having that value.
+  std::size_t better = 0;
   std::size_t worse = 0;
   std::size_t equal = 0;
-  double mean_before = 0;  ///< over those that both solved; NaN if none
+  double mean_before = 0;  ///< over the same; NaN if none
   double mean_now = 0;
-  std::string words;  ///< a sentence, with the paired test
+  std::string words;  ///< a sentence, with the paired tests
 };
 
 struct TuneSummary {

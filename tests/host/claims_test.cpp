@@ -16,7 +16,7 @@ TEST(Claims, TheWholeIntervalDecides) {
   ASSERT_TRUE(holds.interval);
   EXPECT_LT(holds.interval->low, holds.estimate);
   EXPECT_GT(holds.interval->high, holds.estimate);
-  EXPECT_EQ(holds.method, "bootstrap of 40 scenarios");
+  EXPECT_EQ(holds.method, "order statistics, 40 pairs");
   EXPECT_EQ(holds.used, 40U);
   EXPECT_EQ(holds.pairs, 40U);
   EXPECT_FALSE(holds.measured);
@@ -35,13 +35,13 @@ TEST(Claims, AreSaidInWords) {
   }
   study.fail(3, 1);
   const JudgedClaim holds = study.judge("median(b.length_m / a.length_m)", "<= 0.95");
-  EXPECT_EQ(
-      holds.words,
-      "Holds: median(b.length_m / a.length_m) is 0.5, 95 % interval 0.5 to 0.5 (bootstrap of 6 "
-      "scenarios); all of it is <= 0.95. 6 of 7 pairs counted; b.length_m has no number in "
-      "1.");
+  EXPECT_EQ(holds.words,
+            "Holds: median(b.length_m / a.length_m) is 0.5, 95 % interval 0.5 to 0.5 (order "
+            "statistics, 6 pairs); all of it is <= 0.95. 6 of 7 pairs counted; b.length_m has no "
+            "number in "
+            "1.");
   EXPECT_EQ(holds.reasons,
-            "Found: 0.5, 95 % interval 0.5 to 0.5 (bootstrap of 6 scenarios); all of it is <= "
+            "Found: 0.5, 95 % interval 0.5 to 0.5 (order statistics, 6 pairs); all of it is <= "
             "0.95. 6 of 7 pairs counted; b.length_m has no number in 1.");
   EXPECT_EQ(study.judge("max(b.length_m / a.length_m)", "> 0.6").words,
             "Fails: max(b.length_m / a.length_m) is 0.5, which is not > 0.6 (an extreme: of these "
@@ -106,7 +106,7 @@ TEST(Claims, RepetitionsOfAScenarioStayTogether) {
   }
   study.row(5, 1, 0).outcome = "no_route";
   const JudgedClaim solved = study.judge("share(b.solved)", ">= 0.5");
-  EXPECT_EQ(solved.method, "bootstrap of 10 scenarios");
+  EXPECT_EQ(solved.method, "Wilson, 10 scenarios");
   EXPECT_NEAR(solved.estimate, 26.0 / 30, 1e-15);
   // As if each pair stood for itself, the interval would be narrower.
   const auto independent = wilson(26, 30, 0.95);
@@ -121,7 +121,7 @@ TEST(Claims, AUnanimousShareIsNotCertain) {
   const Study one(1, 200, 1);
   EXPECT_EQ(one.judge("share(b.solved)", ">= 0.9").method, "Wilson, 200 pairs");
   EXPECT_EQ(one.judge("share(b.solved)", ">= 0.9").verdict, Verdict::holds);
-  EXPECT_EQ(one.judge("median(b.length_m)", ">= 0.9").method, "bootstrap of 200 repetitions");
+  EXPECT_EQ(one.judge("median(b.length_m)", ">= 0.9").method, "order statistics, 200 pairs");
 }
 
 TEST(Claims, TooFewScenariosGiveNoInterval) {
@@ -147,7 +147,7 @@ TEST(Claims, SharesOfOneStudyHaveOneInterval) {
   study.row(4, 1, 1).outcome = "no_route";
   const JudgedClaim one = judge_claim(study.data(), {"one", "share(b.solved)", ">= 0.5", 0.95});
   const JudgedClaim other = judge_claim(study.data(), {"other", "share(b.solved)", "< 1", 0.95});
-  EXPECT_EQ(one.method, "bootstrap of 10 scenarios");
+  EXPECT_EQ(one.method, "Wilson, 10 scenarios");
   EXPECT_EQ(one.interval->low, other.interval->low);
   EXPECT_EQ(one.interval->high, other.interval->high);
 }
@@ -238,17 +238,48 @@ TEST(Claims, ARunThatIsNotThereIsNoFailure) {
   EXPECT_EQ(judged.estimate, 1);
 }
 
-TEST(Claims, AreReproducible) {
-  Study study(30, 2, 1);
-  const JudgedClaim once = study.judge("mean(b.length_m / a.length_m)", "<= 1");
-  const JudgedClaim again = study.judge("mean(b.length_m / a.length_m)", "<= 1");
-  EXPECT_EQ(once.words, again.words);
-  EXPECT_EQ(once.interval->low, again.interval->low);
-  const JudgedClaim other =
-      judge_claim(study.data(), {"other", "mean(b.length_m / a.length_m)", "<= 1", 0.95});
-  EXPECT_NE(other.interval->low, once.interval->low);  // two claims do not share their luck
-  study.data().file.seed = 5;
-  EXPECT_NE(study.judge("mean(b.length_m / a.length_m)", "<= 1").interval->low, once.interval->low);
+TEST(Claims, PercentilesNeedRunsBeyondThem) {
+  const Study few(71, 1, 0.9);
+  const JudgedClaim undecided = few.judge("p95(b.length_m / a.length_m)", "<= 5");
+  EXPECT_EQ(undecided.verdict, Verdict::undecided) << undecided.words;
+  EXPECT_EQ(undecided.why_no_interval, "too few scenarios: at least 72 for 95 %");
+  EXPECT_TRUE(undecided.has_too_few);
+  EXPECT_EQ(Study(72, 1, 0.9).judge("p95(b.length_m / a.length_m)", "<= 5").verdict,
+            Verdict::holds);
+  EXPECT_EQ(Study(71, 9, 0.9).judge("p95(b.length_m / a.length_m)", "<= 5").verdict,
+            Verdict::undecided)
+      << "repetitions are no scenarios";
+  EXPECT_EQ(few.judge("p99(a.length_m)", "<= 1000").why_no_interval,
+            "too few scenarios: at least 368 for 95 %");
+}
+
+TEST(Claims, NoDifferenceOfSuccessIsNoCertainty) {
+  Study study(20, 1, 1);
+  const JudgedClaim none = study.judge("mean(a.solved - b.solved)", "<= 0.05");
+  EXPECT_EQ(none.estimate, 0);
+  EXPECT_EQ(none.method, "Tango, 20 pairs");
+  EXPECT_EQ(none.verdict, Verdict::undecided) << none.words;
+  EXPECT_EQ(study.judge("mean(a.solved - b.solved)", "<= 0.17").verdict, Verdict::holds);
+  for (const std::size_t s : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
+    study.fail(s, 1);
+  }
+  const JudgedClaim some = study.judge("mean(a.solved - b.solved)", "> 0");
+  EXPECT_EQ(some.interval->low, tango(8, 0, 20, 0.95)->low);
+  EXPECT_EQ(some.verdict, Verdict::holds);
+  EXPECT_EQ(study.judge("mean(b.solved - a.solved)", "< 0").verdict, Verdict::holds);
+  const JudgedClaim share = study.judge("mean(b.solved)", ">= 0.3");
+  EXPECT_EQ(share.interval->low, wilson(12, 20, 0.95)->low);
+}
+
+TEST(Claims, AMeanWithoutVariationIsUndecided) {
+  const Study study(30, 1, 1);
+  const JudgedClaim judged = study.judge("mean(a.flight.collisions)", "<= 0.01");
+  EXPECT_EQ(judged.estimate, 0);
+  EXPECT_EQ(judged.verdict, Verdict::undecided) << "a collision in 50 flights may be missed";
+  EXPECT_TRUE(judged.words.ends_with(
+      "claimed was <= 0.01; no interval, all values are equal. 30 of 30 pairs counted."))
+      << judged.words;
+  EXPECT_FALSE(judged.has_too_few);
 }
 }  // namespace
 }  // namespace altiplan::host::claims_test

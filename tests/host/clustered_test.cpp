@@ -23,7 +23,7 @@ PairedSample pairs(std::size_t scenarios, int repetitions, double (*second)(std:
 }
 
 PairedEffect effect(const PairedSample& sample, bool is_ratio = true) {
-  return paired_effect(sample, is_ratio, RandomStream(1), 0.95);
+  return paired_effect(sample, is_ratio, 0.95);
 }
 
 TEST(Clustered, RepetitionsAreNoEvidence) {
@@ -35,7 +35,7 @@ TEST(Clustered, RepetitionsAreNoEvidence) {
   EXPECT_EQ(often.units.count, 8U);
   EXPECT_TRUE(often.units.of_scenarios);
   EXPECT_EQ(often.units.words(), "8 scenarios");
-  EXPECT_EQ(often.interval->low, once.interval->low);
+  EXPECT_NEAR(often.interval->low, once.interval->low, 0.01) << "between the same two";
 }
 
 TEST(Clustered, OfOneScenarioRepetitionsCount) {
@@ -68,44 +68,100 @@ TEST(Clustered, OfNothing) {
   EXPECT_FALSE(nothing.interval);
   EXPECT_FALSE(nothing.test);
   EXPECT_EQ(nothing.units.count, 0U);
-  EXPECT_FALSE(share_interval({}, {}, 1, 0.95).interval);
+  EXPECT_FALSE(share_interval({}, {}, 0.95).interval);
+  EXPECT_FALSE(difference_interval({}, {}, 0.95).interval);
+  EXPECT_FALSE(quantile_interval(Sample{}, Indices{}, 0.5, 0.95).interval);
+  EXPECT_FALSE(mean_interval(Sample{}, Indices{}, 0.95).interval);
   EXPECT_TRUE(std::isnan(success_test({}).p));
 }
 
 TEST(Clustered, SaysWhyThereIsNoInterval) {
-  EXPECT_EQ(why_no_bootstrap(Indices{0, 1, 2}, 0.95), "too few scenarios: at least 6 for 95 %");
-  EXPECT_EQ(why_no_bootstrap(Indices{3, 3}, 0.99), "too few repetitions: at least 8 for 99 %");
-  EXPECT_EQ(why_no_bootstrap(Indices{0, 1, 2, 3, 4, 5}, 0.95), "");
+  EXPECT_EQ(why_no_interval({3, true}, 0.95), "too few scenarios: at least 6 for 95 %");
+  EXPECT_EQ(why_no_interval({2, false}, 0.99), "too few repetitions: at least 8 for 99 %");
+  EXPECT_EQ(why_no_interval({6, true}, 0.95), "");
+  EXPECT_EQ(why_no_interval({71, true}, 0.95, 0.95), "too few scenarios: at least 72 for 95 %");
   const auto few = effect(pairs(5, 9, [](std::size_t s, int) { return 101 + double(s); }));
   EXPECT_FALSE(few.interval);
   EXPECT_TRUE(few.test);
 }
 
+/// The group of each value, `repetitions` values per group.
+Indices each(std::size_t scenarios, std::size_t repetitions) {
+  Indices groups;
+  for (std::size_t at = 0; at < scenarios * repetitions; ++at) {
+    groups.push_back(at / repetitions);
+  }
+  return groups;
+}
+
 TEST(Clustered, SharesOfIndependentPairsAreWilsons) {
   const Sample solved{1, 1, 0, 1};
   for (const Indices& groups : {Indices{0, 1, 2, 3}, Indices{7, 7, 7, 7}}) {
-    const ShareInterval found = share_interval(solved, groups, 1, 0.95);
+    const MadeInterval found = share_interval(solved, groups, 0.95);
     EXPECT_EQ(found.method, "Wilson, 4 pairs");
     EXPECT_EQ(found.interval->low, wilson(3, 4, 0.95)->low);
   }
 }
 
-TEST(Clustered, SharesWithRepetitionsDrawScenarios) {
+TEST(Clustered, RepetitionsCountForWhatTheyAreWorth) {
+  const Indices groups = each(10, 3);
   Sample solved(30, 1.0);
-  Indices groups;
-  for (std::size_t at = 0; at < 30; ++at) {
-    groups.push_back(at / 3);
-  }
-  EXPECT_EQ(share_interval(solved, groups, 1, 0.95).method, "Wilson, 10 scenarios");
-  EXPECT_EQ(share_interval(solved, groups, 1, 0.95).interval->low, wilson(10, 10, 0.95)->low);
+  EXPECT_EQ(share_interval(solved, groups, 0.95).method, "Wilson, 10 scenarios");
+  EXPECT_EQ(share_interval(solved, groups, 0.95).interval->low, wilson(10, 10, 0.95)->low);
+  // All repetitions of a scenario alike: worth no more than the scenarios.
   solved[0] = solved[1] = solved[2] = 0;
-  const ShareInterval found = share_interval(solved, groups, 1, 0.95);
-  EXPECT_EQ(found.method, "bootstrap of 10 scenarios");
-  EXPECT_LT(found.interval->low, wilson(27, 30, 0.95)->low);
-  const ShareInterval few =
-      share_interval(std::span(solved).first(9), std::span(groups).first(9), 1, 0.95);
-  EXPECT_FALSE(few.interval) << "3 scenarios";
-  EXPECT_EQ(few.method, "");
+  EXPECT_NEAR(share_interval(solved, groups, 0.95).interval->low, wilson(9, 10, 0.95)->low, 1e-12);
+  // One repetition in each of three: nearly as good as independent.
+  solved[1] = solved[2] = 1;
+  solved[3] = solved[6] = 0;
+  const Interval apart = *share_interval(solved, groups, 0.95).interval;
+  EXPECT_GT(apart.low, wilson(9, 10, 0.95)->low + 0.1);
+  EXPECT_LE(apart.low, wilson(27, 30, 0.95)->low);
+  const MadeInterval few =
+      share_interval(std::span(solved).first(9), std::span(groups).first(9), 0.95);
+  EXPECT_TRUE(few.interval) << "of 3 scenarios it is wide, but it is one";
+}
+
+TEST(Clustered, NoDifferenceIsNoCertainty) {
+  const Sample none(20, 0.0);
+  const MadeInterval found = difference_interval(none, each(20, 1), 0.95);
+  EXPECT_EQ(found.method, "Tango, 20 pairs");
+  EXPECT_NEAR(found.interval->high, 0.161125, 1e-6);
+  EXPECT_EQ(difference_interval(none, each(4, 5), 0.95).interval->high, tango(0, 0, 4, 0.95)->high);
+  Sample some(20, 0.0);
+  some[0] = some[1] = 1;
+  some[2] = -1;
+  EXPECT_NEAR(difference_interval(some, each(20, 1), 0.95).interval->low,
+              tango(2, 1, 20, 0.95)->low, 1e-12);
+}
+
+TEST(Clustered, QuantilesAndMeansOfRepetitions) {
+  Sample values;
+  for (std::size_t s = 0; s < 10; ++s) {
+    values.insert(values.end(), 3, double(s));
+  }
+  const Indices groups = each(10, 3);
+  const MadeInterval middle = quantile_interval(values, groups, 0.5, 0.95);
+  EXPECT_EQ(middle.method, "order statistics, 10 scenarios");
+  Sample once;
+  for (std::size_t s = 0; s < 10; ++s) {
+    once.push_back(double(s));
+  }
+  const Interval of_once = *quantile_interval(once, each(10, 1), 0.5, 0.95).interval;
+  EXPECT_NEAR(middle.interval->low, of_once.low, 1);
+  EXPECT_NEAR(middle.interval->high, of_once.high, 1);
+  EXPECT_EQ(quantile_interval(values, groups, 0.95, 0.95).why_none,
+            "too few scenarios: at least 72 for 95 %");
+  const MadeInterval average = mean_interval(values, groups, 0.95);
+  EXPECT_EQ(average.method, "Student's t, skewness corrected, 10 scenarios");
+  EXPECT_NEAR(average.interval->low, mean_interval(once, each(10, 1), 0.95).interval->low, 1e-12);
+  EXPECT_EQ(mean_interval(Sample(30, 2.0), groups, 0.95).why_none, "all values are equal");
+  Sample rare(100, 0.0);
+  rare[3] = rare[50] = 1;
+  EXPECT_EQ(mean_interval(rare, each(100, 1), 0.95).why_none, "all but 2 values are equal")
+      << "two of two are no evidence";
+  EXPECT_EQ(mean_interval(std::span(values).first(15), std::span(groups).first(15), 0.95).why_none,
+            "too few scenarios: at least 6 for 95 %");
 }
 
 TEST(Clustered, SuccessesOfOneRepetitionAreMcNemars) {

@@ -87,7 +87,7 @@ TEST(CompareFigure, TooFewRunsDecideNothing) {
   EXPECT_EQ(few.why, "too few scenarios: at least 11 for 99.9 %");
   const ReproducedFigure far = compared(runs(20), "p95(p.x)", "999", true);
   EXPECT_EQ(far.mark, Mark::too_few) << "20 runs do not reach so far";
-  EXPECT_EQ(far.why, "too few scenarios: at least 135 for 99.9 %");
+  EXPECT_EQ(far.why, "too few scenarios: at least 149 for 99.9 %");
   EXPECT_EQ(sample("mean(p.one)", "1"), Mark::within);
   EXPECT_EQ(sample("mean(p.one)", "1.1"), Mark::too_few) << "other values may be rare";
   EXPECT_EQ(sample("mean(p.flight.missing)", "1"), Mark::too_few);

@@ -77,9 +77,9 @@ TEST(ReportComparisons, AShareHasOneInterval) {
   const StudyData ordered = in_order(data, true);
   const Analysis analysis = analyse(ordered, true);
   const JudgedClaim judged = judge_claim(ordered, {"c", "share(p1.solved)", ">= 0.5", 0.95});
-  const ShareInterval& shown = analysis.success[1].interval;
+  const MadeInterval& shown = analysis.success[1].interval;
   ASSERT_TRUE(shown.interval && judged.interval);
-  EXPECT_EQ(shown.method, "bootstrap of 10 scenarios");
+  EXPECT_EQ(shown.method, "Wilson, 10 scenarios");
   EXPECT_EQ(judged.method, shown.method);
   EXPECT_EQ(judged.interval->low, shown.interval->low);
   EXPECT_EQ(judged.interval->high, shown.interval->high);
@@ -89,6 +89,9 @@ TEST(ReportComparisons, AShareHasOneInterval) {
   EXPECT_EQ(made.only_against, 4u);
   EXPECT_EQ(made.test.first_more, 2u);
   EXPECT_EQ(made.test.p, 0.5);
+  ASSERT_TRUE(made.difference.interval);
+  EXPECT_LT(made.difference.interval->low, -4.0 / 30);
+  EXPECT_GT(made.difference.interval->high, 0) << "two scenarios may be chance";
 }
 
 TEST(ReportComparisons, OfTooFewScenariosThereIsNoInterval) {

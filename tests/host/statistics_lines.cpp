@@ -35,16 +35,6 @@ Json friedman_test(const Json& call) {
   return test ? Json::array({test->statistic, test->p, test->average_ranks}) : Json();
 }
 
-Json bootstrap(const Json& call) {
-  const bool of_median = call.at("statistic") == "median";
-  const Statistic statistic = [&](std::span<double> sample) {
-    return of_median ? quantile_in_place(sample, 0.5) : mean(sample);
-  };
-  return interval(bootstrap_interval(
-      of(call), statistic, call.at("resamples").get<std::vector<std::vector<std::size_t>>>(),
-      call.at("confidence")));
-}
-
 const std::map<std::string, Call> kCalls{
     {"normal_tail", [](const Json& call) { return Json(normal_tail(call.at("of"))); }},
     {"normal_quantile", [](const Json& call) { return Json(normal_quantile(call.at("of"))); }},
@@ -70,7 +60,17 @@ const std::map<std::string, Call> kCalls{
     {"vargha_delaney",
      [](const Json& call) { return number(vargha_delaney(of(call, "x"), of(call, "y"))); }},
     {"friedman", friedman_test},
-    {"bootstrap", bootstrap},
+    {"student_quantile",
+     [](const Json& call) { return Json(student_quantile(call.at("of"), call.at("degrees"))); }},
+    {"tango",
+     [](const Json& call) {
+       return interval(tango(call.at("gained"), call.at("lost"), call.at("pairs"), 0.95));
+     }},
+    {"quantile_interval",
+     [](const Json& call) {
+       return interval(
+           quantile_interval(of(call), call.at("q"), call.at("units"), call.at("confidence")));
+     }},
 };
 }  // namespace
 }  // namespace altiplan::host

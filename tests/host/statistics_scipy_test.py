@@ -10,7 +10,7 @@ import unittest
 import warnings
 
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 PROGRAM = None
 TOLERANCE = 1e-9
@@ -220,26 +220,43 @@ class Statistics(unittest.TestCase):
                     expected.append([found.statistic, found.pvalue, list(ranks)])
         self.compare(calls, expected, absolute=1e-12)
 
-    def test_bootstrap(self):
+    def test_student(self):
+        """By its inverse: scipy.stats.t.ppf of 1.10 has nine digits."""
+        pairs = [(p, k) for p in [0.001, 0.025, 0.3, 0.9, 0.975, 0.9999] for k in [1, 2, 5, 30, 1000]]
+        lines = "".join(json.dumps({"call": "student_quantile", "of": p, "degrees": k}) + "\n" for p, k in pairs)
+        done = subprocess.run([PROGRAM], input=lines, capture_output=True, text=True, check=True)
+        for (p, k), line in zip(pairs, done.stdout.splitlines()):
+            self.assertAlmostEqual(stats.t.cdf(json.loads(line), k), p, 13, (p, k))
+
+    def test_tango(self):
+        """The score at each end, from the likelihood itself, is the normal quantile."""
+        def score(gained, lost, pairs, difference):
+            def unlikely(q):  # q: of a loss, q + difference: of a gain
+                terms = ((gained, q + difference), (lost, q), (pairs - gained - lost, 1 - 2 * q - difference))
+                return -sum(n * np.log(max(p, 1e-300)) for n, p in terms if n)
+            q = optimize.minimize_scalar(unlikely, bounds=(max(0, -difference), (1 - difference) / 2),
+                                         method="bounded", options={"xatol": 1e-13}).x
+            return (gained - lost - pairs * difference) / np.sqrt(pairs * (2 * q + difference - difference**2))
+
+        cases = [(9, 2, 40), (1, 0, 12), (3, 3, 30), (0, 7, 25), (20, 11, 200), (12.5, 4.25, 33.5)]
+        lines = "".join(json.dumps({"call": "tango", "gained": g, "lost": l, "pairs": n}) + "\n" for g, l, n in cases)
+        done = subprocess.run([PROGRAM], input=lines, capture_output=True, text=True, check=True)
+        for case, line in zip(cases, done.stdout.splitlines()):
+            low, high = json.loads(line)
+            self.assertAlmostEqual(score(*case, low), stats.norm.ppf(0.975), 4, case)
+            self.assertAlmostEqual(score(*case, high), stats.norm.ppf(0.025), 4, case)
+
+    def test_quantile_interval(self):
         calls, expected = [], []
-        for n in [1, 2, 7, 30]:
-            for name, statistic in (("median", np.median), ("mean", np.mean)):
-                sample = self.sample(n, 3)
-                indices = self.random.integers(0, n, (500, n))
-                estimates = [statistic(sample[row]) for row in indices]
-                for confidence in (0.8, 0.95):
-                    calls.append(
-                        {
-                            "call": "bootstrap",
-                            "of": list(sample),
-                            "statistic": name,
-                            "resamples": indices.tolist(),
-                            "confidence": confidence,
-                        }
-                    )
-                    half = (1 - confidence) / 2
-                    expected.append(list(np.quantile(estimates, [half, 1 - half])))
-        self.compare(calls, expected, absolute=1e-12)
+        for q, n in [(0.5, 6), (0.5, 25), (0.1, 60), (0.95, 72), (0.95, 300), (0.99, 400)]:
+            for confidence in (0.9, 0.95) if n != 6 else (0.95,):
+                sample = self.sample(n, 6)
+                ranks = [optimize.brentq(lambda r, p=p: stats.beta.cdf(q, r, n + 1 - r) - p, 1, n, xtol=1e-13)
+                         for p in ((1 + confidence) / 2, (1 - confidence) / 2)]
+                calls.append({"call": "quantile_interval", "of": list(sample), "q": q, "units": n,
+                              "confidence": confidence})
+                expected.append(list(np.interp(ranks, np.arange(1, n + 1), np.sort(sample))))
+        self.compare(calls, expected, absolute=1e-9)
 
 
 def flat(value):

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <set>
+
+#include "altiplan/random.hpp"
 
 namespace altiplan::host::statistics_test {
 using namespace study;
@@ -23,8 +23,6 @@ Sample random_sample(std::uint64_t seed, std::size_t n) {
   std::generate(sample.begin(), sample.end(), [&] { return stream.normal(); });
   return sample;
 }
-
-double mean_of(std::span<double> sample) { return mean(sample); }
 
 TEST(Distributions, QuantilesInvertTails) {
   for (double p = 0.0005; p < 1; p += 0.001) {
@@ -51,6 +49,8 @@ TEST(Distributions, OutsideOfTheirRangeAreNaN) {
   EXPECT_TRUE(std::isnan(studentized_range_quantile(0, 3)));
   EXPECT_TRUE(std::isnan(studentized_range_quantile(0.95, 1)));
   EXPECT_EQ(studentized_range(0, 3), 0);
+  EXPECT_TRUE(std::isnan(student_quantile(1, 3)));
+  EXPECT_TRUE(std::isnan(student_quantile(0.5, 0)));
   EXPECT_EQ(studentized_range(kInfinity, 3), 1);
   // The smallest and the largest that a call may be given: Boost.Math is not to throw.
   EXPECT_LT(normal_quantile(5e-324), -38);
@@ -134,16 +134,16 @@ TEST(Intervals, WilsonContainsTheShareAndNarrows) {
   for (std::int64_t trials = 1; trials < 60; ++trials) {
     for (std::int64_t successes = 0; successes <= trials; ++successes) {
       const double share = double(successes) / double(trials);
-      const auto interval = wilson(successes, trials, 0.95);
+      const auto interval = wilson(double(successes), double(trials), 0.95);
       ASSERT_TRUE(interval);
       EXPECT_LE(0, interval->low);
       EXPECT_LE(interval->low, share);
       EXPECT_LE(share, interval->high);
       EXPECT_LE(interval->high, 1);
       EXPECT_LT(interval->low, interval->high);
-      const auto other = wilson(trials - successes, trials, 0.95);
+      const auto other = wilson(double(trials - successes), double(trials), 0.95);
       EXPECT_NEAR(other->low, 1 - interval->high, 1e-15);
-      const auto more = wilson(10 * successes, 10 * trials, 0.95);
+      const auto more = wilson(double(10 * successes), double(10 * trials), 0.95);
       EXPECT_LT(more->high - more->low, interval->high - interval->low);
     }
   }
@@ -157,131 +157,83 @@ TEST(Intervals, WilsonOfNothing) {
   EXPECT_FALSE(wilson(1, 2, kNone));
 }
 
-TEST(Bootstrap, OnGivenIndices) {
-  const Sample sample{1, 2, 6};
-  // Means 1, 2, 3, 4, 5: the 80% interval is from quantile 0.1 to 0.9.
-  const std::vector<Indices> resamples{
-      {0, 0, 0}, {1, 1, 1}, {0, 1, 2}, {2, 2, 0, 0, 2, 1, 1}, {2, 2, 2, 1}};
-  Sample means;
-  for (const Indices& indices : resamples) {
-    double sum = 0;
-    for (const std::size_t index : indices) {
-      sum += sample[index];
-    }
-    means.push_back(sum / double(indices.size()));
-  }
-  const auto interval = bootstrap_interval(sample, mean_of, resamples, 0.8);
-  ASSERT_TRUE(interval);
-  EXPECT_DOUBLE_EQ(interval->low, quantile(means, 0.1));
-  EXPECT_DOUBLE_EQ(interval->high, quantile(means, 0.9));
-  EXPECT_DOUBLE_EQ(interval->low, 1.4);
+TEST(Intervals, TangoHasAWidthWithoutAnyDifference) {
+  const auto none = tango(0, 0, 20, 0.95);
+  ASSERT_TRUE(none);
+  // The difference at which no discordant pair among 20 is as likely as its score allows.
+  EXPECT_NEAR(none->high, 0.161125, 1e-6);
+  EXPECT_NEAR(none->low, -none->high, 1e-12);
+  const auto gained = tango(9, 2, 40, 0.95);
+  const auto lost = tango(2, 9, 40, 0.95);
+  EXPECT_LT(gained->low, 7.0 / 40);
+  EXPECT_GT(gained->high, 7.0 / 40);
+  EXPECT_NEAR(gained->low, -lost->high, 1e-12);
+  EXPECT_NEAR(gained->high, -lost->low, 1e-12);
+  EXPECT_EQ(tango(20, 0, 20, 0.95)->high, 1);
+  EXPECT_GT(tango(20, 0, 20, 0.95)->low, 0.5);
+  EXPECT_FALSE(tango(3, 3, 5, 0.95));
+  EXPECT_FALSE(tango(0, 0, 0, 0.95));
+  EXPECT_FALSE(tango(-1, 0, 5, 0.95));
+  EXPECT_FALSE(tango(1, 0, 5, 1));
 }
 
-TEST(Bootstrap, RefusesWhatGivesNoInterval) {
-  const Sample sample{1, 2};
-  EXPECT_FALSE(bootstrap_interval(sample, mean_of, std::vector<Indices>{}, 0.9));
-  EXPECT_FALSE(bootstrap_interval(sample, mean_of, std::vector<Indices>{{}}, 0.9));
-  EXPECT_FALSE(bootstrap_interval(sample, mean_of, std::vector<Indices>{{0, 2}}, 0.9));
-  EXPECT_FALSE(bootstrap_interval({}, mean_of, std::vector<Indices>{{0}}, 0.9));
-  EXPECT_FALSE(bootstrap_interval(sample, mean_of, std::vector<Indices>{{0, 1}}, 1));
-  const RandomStream stream(1);
-  EXPECT_FALSE(bootstrap_interval(Sample{1}, Indices{0}, mean_of, stream, 0.9));
-  EXPECT_FALSE(bootstrap_interval(sample, Indices{0}, mean_of, stream, 0.9));
-  const Indices each{0, 1, 2, 3, 4, 5};
-  EXPECT_TRUE(bootstrap_interval(Sample{1, 2, 3, 4, 5, 6}, each, mean_of, stream, 0.9));
-  EXPECT_FALSE(bootstrap_interval(Sample{1, 2, 3, 4, 5, kNone}, each, mean_of, stream, 0.9));
-  EXPECT_FALSE(bootstrap_interval(Sample{1, 2, 3, 4, 5, 6}, each, mean_of, stream, 1));
-}
-
-TEST(Bootstrap, NeedsAsManyUnitsAsCarryIt) {
+TEST(Intervals, QuantilesNeedAsManyUnitsAsReachBeyondThem) {
   EXPECT_EQ(fewest_units(0.5), 2U);
   EXPECT_EQ(fewest_units(0.9), 5U);
   EXPECT_EQ(fewest_units(0.95), 6U);
   EXPECT_EQ(fewest_units(0.99), 8U);
   EXPECT_EQ(fewest_units(1), 0U);
-  EXPECT_EQ(fewest_units(0.95, 0.95), 59U) << "0.95^58 is 0.051";
-  EXPECT_EQ(fewest_units(0.95, 0.05), 59U);
-  EXPECT_EQ(fewest_units(0.999, 0.95), 135U);
-  const RandomStream stream(1);
-  const auto of_units = [&](std::size_t units, std::size_t repetitions, double confidence) {
-    Sample sample;
-    Indices groups;
-    for (std::size_t at = 0; at < units * repetitions; ++at) {
-      sample.push_back(double(at));
-      groups.push_back(at % units);
-    }
-    EXPECT_EQ(resampled_units(groups), units);
-    return bootstrap_interval(sample, groups, mean_of, stream, confidence);
-  };
-  for (const double confidence : {0.8, 0.95, 0.99}) {
-    const std::size_t fewest = fewest_units(confidence);
-    EXPECT_TRUE(of_units(fewest, 1, confidence));
-    EXPECT_TRUE(of_units(fewest, 3, confidence));
-    EXPECT_FALSE(of_units(fewest - 1, 1, confidence));
-    EXPECT_FALSE(of_units(fewest - 1, 50, confidence)) << "repetitions are no scenarios";
-  }
-  EXPECT_EQ(resampled_units(Indices{4, 4, 4}), 3U) << "of one scenario, repetitions are drawn";
-}
-
-TEST(Bootstrap, DrawsWholeGroups) {
-  const Indices groups{7, 7, 3, 7, 3, 5};
-  const RandomStream stream(4);
-  std::array<int, 6> drawn{};
-  for (std::size_t number = 0; number < 3000; ++number) {
-    const Indices indices = resample(groups, stream, number);
-    std::array<int, 6> count{};
-    for (const std::size_t index : indices) {
-      ++count[index];
-      ++drawn[index];
-    }
-    ASSERT_EQ(count[0], count[1]);
-    ASSERT_EQ(count[0], count[3]);
-    ASSERT_EQ(count[2], count[4]);
-    ASSERT_EQ(count[0] + count[2] + count[5], 3);
-  }
-  for (const int times : drawn) {
-    EXPECT_NEAR(times, 3000, 200);  // each once per resample on average; 4.5 deviations
+  EXPECT_EQ(fewest_units(0.95, 0.9), 36U);
+  EXPECT_EQ(fewest_units(0.95, 0.95), 72U) << "0.95^71 is 0.0262";
+  EXPECT_EQ(fewest_units(0.95, 0.05), 72U);
+  EXPECT_EQ(fewest_units(0.95, 0.99), 368U);
+  EXPECT_EQ(fewest_units(0.999, 0.95), 149U);
+  EXPECT_EQ(fewest_units(0.95, 0), 0U);
+  for (const double q : {0.1, 0.5, 0.95}) {
+    const std::size_t fewest = fewest_units(0.95, q);
+    EXPECT_TRUE(quantile_interval(random_sample(3, fewest), q, double(fewest), 0.95));
+    EXPECT_FALSE(quantile_interval(random_sample(3, fewest - 1), q, double(fewest - 1), 0.95));
+    EXPECT_FALSE(quantile_interval(random_sample(3, 50 * fewest), q, double(fewest - 1), 0.95))
+        << "repetitions are no scenarios";
   }
 }
 
-TEST(Bootstrap, TwoGroupsAreDrawnAsSuch) {
-  std::set<std::size_t> lengths;
-  for (std::size_t number = 0; number < 50; ++number) {
-    lengths.insert(resample(Indices{0, 0, 0, 1}, RandomStream(4), number).size());
+TEST(Intervals, QuantilesLieBetweenOrderStatistics) {
+  Sample sample(72);
+  std::iota(sample.begin(), sample.end(), 1.0);
+  std::reverse(sample.begin(), sample.end());
+  const auto far = quantile_interval(sample, 0.95, 72, 0.95);
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->low, 64.9159, 1e-4);  // the rank itself, as the values are the ranks
+  EXPECT_NEAR(far->high, 71.9980, 1e-4);
+  // Each value three times, worth as much as once: the same ends.
+  Sample thrice;
+  for (const double value : sample) {
+    thrice.insert(thrice.end(), 3, value);
   }
-  EXPECT_EQ(lengths, (std::set<std::size_t>{2, 4, 6}));
+  const auto repeated = quantile_interval(thrice, 0.95, 72, 0.95);
+  EXPECT_NEAR(repeated->low, far->low, 1);
+  EXPECT_EQ(repeated->high, 72);
+  const Sample equal(6, 3.5);
+  EXPECT_EQ(quantile_interval(equal, 0.5, 6, 0.95)->low, 3.5);
+  EXPECT_EQ(quantile_interval(equal, 0.5, 6, 0.95)->high, 3.5);
+  EXPECT_FALSE(quantile_interval({}, 0.5, 6, 0.95));
+  EXPECT_FALSE(quantile_interval(Sample{1, 2, 3, 4, 5, kNone}, 0.5, 6, 0.95));
+  EXPECT_EQ(quantile_interval(Sample{1, 2, 3, 4, 5, kInfinity}, 0.5, 6, 0.95)->high, kInfinity);
 }
 
-TEST(Bootstrap, OneGroupIsDrawnByValue) {
-  const Indices indices = resample(Indices{2, 2, 2, 2, 2, 2, 2, 2}, RandomStream(4), 0);
-  EXPECT_EQ(indices.size(), 8U);
-  EXPECT_LT(std::set<std::size_t>(indices.begin(), indices.end()).size(), 8U);
-  EXPECT_TRUE(resample({}, RandomStream(4), 0).empty());
-}
-
-TEST(Bootstrap, IsReproducibleAndOfItsStream) {
-  const Indices groups{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-  // A change of these changes every stored report.
-  EXPECT_EQ(resample(groups, RandomStream(1), 0), (Indices{8, 5, 6, 1, 3, 6, 9, 8, 4, 7}));
-  EXPECT_NE(resample(groups, RandomStream(1), 0), resample(groups, RandomStream(1), 1));
-  EXPECT_NE(resample(groups, RandomStream(1), 0), resample(groups, RandomStream(2), 0));
-  const Sample sample = random_sample(3, 10);
-  const auto once = bootstrap_interval(sample, groups, mean_of, RandomStream(1), 0.95);
-  const auto again = bootstrap_interval(sample, groups, mean_of, RandomStream(1), 0.95);
-  EXPECT_EQ(once->low, again->low);
-  EXPECT_EQ(once->high, again->high);
-}
-
-TEST(Bootstrap, CoversAsOftenAsItSays) {
-  int covered = 0;
-  for (std::uint64_t study = 0; study < 100; ++study) {
-    const Sample sample = random_sample(study, 40);
-    Indices groups(sample.size());
-    std::iota(groups.begin(), groups.end(), std::size_t{0});
-    const auto interval = bootstrap_interval(sample, groups, mean_of, RandomStream(study), 0.9);
-    covered += interval->low <= 0 && 0 <= interval->high ? 1 : 0;
-  }
-  EXPECT_NEAR(covered, 90, 9);  // 3 deviations
+TEST(Intervals, MeansLeanWhereTheTailIs) {
+  const Sample even{-2, -1, -1, 1, 1, 2};
+  const auto symmetric = mean_interval(10, even, 0.95);
+  ASSERT_TRUE(symmetric);
+  EXPECT_NEAR(symmetric->low + symmetric->high, 20, 1e-12);
+  EXPECT_NEAR(symmetric->high - 10, 2.5705818 * std::sqrt(12.0 / 5 / 6), 1e-6) << "Student's t";
+  const auto skewed = mean_interval(10, Sample{-1, -1, -1, -1, -1, 5}, 0.95);
+  EXPECT_GT(skewed->high - 10, 2 * (10 - skewed->low));
+  EXPECT_FALSE(mean_interval(10, Sample{0, 0, 0, 0, 0, 0}, 0.95)) << "others may be rare";
+  EXPECT_FALSE(mean_interval(10, Sample{-1, 1, -1, 1, 0}, 0.95)) << "too few";
+  EXPECT_FALSE(mean_interval(10, even, 1));
+  EXPECT_FALSE(mean_interval(kInfinity, even, 0.95));
 }
 }  // namespace
 }  // namespace altiplan::host::statistics_test

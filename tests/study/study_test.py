@@ -74,6 +74,22 @@ class Study(StudyCase):
         self.assertEqual(len(set.union(*seeds.values())), 10)
         self.assertFalse((self.folder / "out.db.work").exists(), "nothing is left lying about")
 
+    def test_a_claim_made_after_runs_says_so(self):
+        claims = "claims: [{id: all, that: share(straight.solved), is: '%s'}%s]\n"
+        self.study(claims % (">= 0.9", ""))
+        self.assertNotIn("after", self.call("--filter", "s\\[radius_m=[12]\\]"))
+        said = self.call()
+        self.assertIn("5 of 5 pairs counted; repetitions are equal and count once.\n", said)
+        self.study(claims % (">= 0.3", ", {id: more, that: share(none.solved), is: <= 0.9}"))
+        for _ in range(2):
+            said = self.call()
+            self.assertRegex(said, "claim all: Holds: .* count once. Changed after 20 runs.")
+            self.assertRegex(said, "claim more: Holds: .* count once. Added after 20 runs.")
+            self.assertIn("with Holm's correction over all 2 that have an interval all decided ones stay decided.", said)
+        self.study(claims % (">= 0.9", ""))
+        self.assertIn("Changed after 20 runs.", self.call())
+        self.assertNotIn("after", self.call("--fresh"))
+
     def test_what_is_stored_is_not_run_again(self):
         self.call("--filter", "straight")
         self.assertEqual(len(self.rows()), 10)

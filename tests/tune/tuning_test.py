@@ -189,6 +189,22 @@ class Failures(TuneCase):
         self.assertEqual(max(scores), 5000)
         self.assertLess(min(scores), 1000)
 
+    def test_failures_count_in_the_comparison(self):
+        # As it is the pipeline fails everywhere; the penalty is worse than any route.
+        held_out = [f"scenarios/s.yaml[start.at_m=[[100,{y},500]]]" for y in range(100, 500, 50)]
+        self.with_faults(fails_from=0.5)
+        words = ("--over", "steps.0.with.x=0.2..0.4", "--hold-out", *held_out)
+        said = self.tune(*words, "--penalty", 5000)
+        self.assertIn("held-out scenarios: better in 8, worse in 0 and equal in 0 of 8 scenarios (original fails in 8, "
+                      "tuned in 0); McNemar's test of success: p = 0.008, the tuned pipeline solves more; Wilcoxon's "
+                      "signed-rank test, failures with the penalty: p = 0.008, the tuned pipeline is better", said)
+        self.assertEqual(self.summary()["held_back"]["only_tuned"], 8)
+        self.assertEqual(self.summary()["held_back"]["only_as_it_is"], 0)
+        self.assertEqual(self.summary()["held_back"]["mean_as_it_is"], 5000)
+        said = self.tune(*words, out="without")
+        self.assertIn("better in 0, worse in 0 and equal in 0 of 8 scenarios (original fails in 8, tuned in 0); "
+                      "McNemar's test of success: p = 0.008, the tuned pipeline solves more\n", said)
+
     def test_all_fail(self):
         self.with_faults(fails_from=0)
         said = self.tune(*X, expect=1)

@@ -105,21 +105,22 @@ void print_outcomes(const study::StudyData& data) {
 /// True if every claim holds.
 bool print_claims(const study::StudyData& data) {
   bool all_hold = true;
-  std::vector<study::JudgedClaim> all;
-  for (const study::ClaimEntry& claim : data.file.claims) {
-    all.push_back(study::judge_claim(data, claim));
-    const study::JudgedClaim& judged = all.back();
+  const std::vector<study::JudgedClaim> all = study::judge_claims(data);
+  for (const study::JudgedClaim& judged : all) {
     all_hold = all_hold && judged.verdict == study::Verdict::holds;
     if (judged.lacks_runs) {
       continue;
     }
     const std::size_t verdict = judged.words.find(':');  // "Holds: …"
     const Color color = color_of(std::string(name_of(judged.verdict)));
-    std::printf("  claim %s: %s%s\n", claim.id.c_str(),
+    std::printf("  claim %s: %s%s\n", judged.claim.id.c_str(),
                 painted(stdout, color, judged.words.substr(0, verdict)).c_str(),
                 judged.words.substr(verdict).c_str());
   }
   for (const std::string& sentence : study::common_reasons(all)) {
+    std::printf("  %s\n", sentence.c_str());
+  }
+  if (const std::string sentence = study::multiplicity(all); !sentence.empty()) {
     std::printf("  %s\n", sentence.c_str());
   }
   return all_hold;
@@ -191,7 +192,6 @@ int study(StudyArguments arguments) {
   }
   const study::StudyData data = study::load_study_data({arguments.store});
   print_outcomes(data);
-  // In the report's order, which the resampling depends on, so that both give the same verdicts.
   const bool all_hold = print_claims(study::report::in_order(data, true));
   return arguments.gate && !all_hold ? kNoRoute : kDone;
 }

@@ -109,6 +109,8 @@ class Evaluation {
     }
   }
 
+  void repeats() { pairs_.repeat_themselves = true; }
+
   ClaimPairs take() { return std::move(pairs_); }
 
  private:
@@ -133,6 +135,9 @@ ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity) {
   for (const ClaimValue& value : quantity.values) {
     named.insert(value.pipeline);
   }
+  const std::vector<bool> repeat = repeat_themselves(data);
+  const bool is_once =
+      std::all_of(named.begin(), named.end(), [&](std::size_t p) { return repeat[p]; });
   Evaluation evaluation(data, quantity);
   // Rows are sorted by scenario, so the pairs of a scenario are contiguous.
   for (auto row = data.rows.begin(); row != data.rows.end();) {
@@ -143,6 +148,14 @@ ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity) {
       if (named.contains(row->pipeline)) {
         runs[row->pipeline] = &*row;
       }
+    }
+    if (is_once && pairs.size() > 1) {
+      evaluation.repeats();
+      const auto is_whole = [&](const auto& pair) { return pair.second.size() == named.size(); };
+      const auto whole = std::find_if(pairs.begin(), pairs.end(), is_whole);
+      const Runs& runs = whole == pairs.end() ? pairs.begin()->second : whole->second;
+      evaluation.add(scenario, runs, whole != pairs.end());
+      continue;
     }
     for (const auto& [repetition, runs] : pairs) {
       evaluation.add(scenario, runs, runs.size() == named.size());

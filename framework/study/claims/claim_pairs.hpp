@@ -13,6 +13,7 @@ struct ClaimPairs {
   std::vector<double> results;         ///< one per counted pair
   std::vector<std::size_t> scenarios;  ///< the scenario of each
   std::size_t all = 0;                 ///< pairs with at least one run
+  bool repeat_themselves = false;      ///< of each scenario one counts: its repetitions are equal
   std::size_t whole = 0;               ///< pairs with runs of all pipelines named
   std::vector<std::size_t> missing;    ///< pairs without it, one per value of the quantity
   std::size_t undefined = 0;  ///< pairs with all values whose result is undefined, such as 0 / 0
@@ -22,7 +23,8 @@ struct ClaimPairs {
 /// in comparisons too.
 double evaluate(const ClaimExpression& expression, const std::vector<double>& values);
 
-/// A pair counts if every named value is a number. `p.solved and …` is false if p did not solve:
+/// A pair counts if every named value is a number; one of each scenario if all pipelines named
+/// repeat_themselves. `p.solved and …` is false if p did not solve:
 /// other values of p are then not needed.
 ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity);
 }  // namespace altiplan::study

@@ -100,6 +100,9 @@ std::string basis(const JudgedClaim& judged, const ClaimQuantity& quantity, cons
     add("the expression is not a number in " + std::to_string(pairs.undefined) +
         " (such as 0 / 0)");
   }
+  if (pairs.repeat_themselves) {
+    add("repetitions are equal and count once");
+  }
   return std::to_string(judged.used) + " of " + host::counted(judged.pairs, "pair") + " counted" +
          words + ".";
 }
@@ -112,9 +115,14 @@ void say(JudgedClaim& judged, const ClaimRange& range, const ClaimQuantity& quan
   const std::string of = pairs.all == 0 ? "" : " " + basis(judged, quantity, pairs, data);
   std::string verdict(name_of(judged.verdict));
   verdict.front() = char(std::toupper(verdict.front()));
+  std::string stated = judged.stated.empty() ? "" : " " + host::sentence(judged.stated);
+  if (!stated.empty()) {
+    stated[1] = char(std::toupper(stated[1]));
+  }
   judged.words =
-      host::sentence(verdict + ": " + (has_data ? judged.claim.that + " is " : "") + found) + of;
-  judged.reasons = host::sentence((has_data ? "Found: " : "") + found) + of;
+      host::sentence(verdict + ": " + (has_data ? judged.claim.that + " is " : "") + found) + of +
+      stated;
+  judged.reasons = host::sentence((has_data ? "Found: " : "") + found) + of + stated;
   judged.reasons.front() = char(std::toupper(judged.reasons.front()));
 }
 

@@ -22,66 +22,112 @@ std::vector<std::string> names_of(const std::vector<StoredVariant>& variants) {
   return names;
 }
 
-Statistic statistic_of(const ClaimQuantity& quantity) {
+double estimate_of(const ClaimQuantity& quantity, const std::vector<double>& results) {
   switch (quantity.function) {
     case Function::quantile:
-      return [q = quantity.q](std::span<double> sample) { return quantile_in_place(sample, q); };
+      return quantile(results, quantity.q);
     case Function::min:
-      return
-          [](std::span<double> sample) { return *std::min_element(sample.begin(), sample.end()); };
+      return *std::min_element(results.begin(), results.end());
     case Function::max:
-      return
-          [](std::span<double> sample) { return *std::max_element(sample.begin(), sample.end()); };
+      return *std::max_element(results.begin(), results.end());
     case Function::mean:
     case Function::share:
       break;
   }
-  return [](std::span<double> sample) { return mean(sample); };
+  return mean(results);
 }
 
-void find_interval(const StudyData& data, const ClaimQuantity& quantity, const ClaimPairs& pairs,
-                   JudgedClaim& judged) {
-  if (quantity.function == Function::min || quantity.function == Function::max) {
-    return;
+/// True if it is a value that is 0 or 1.
+bool is_success(const ClaimExpression& expression, const ClaimQuantity& quantity) {
+  return expression.kind == ClaimExpression::Kind::value &&
+         is_yes_or_no(quantity.values[expression.value].name);
+}
+
+/// A mean of successes is a share, and one of their differences the difference of two: of equal
+/// values too, these have intervals of some width.
+MadeInterval interval_of_mean(const ClaimQuantity& quantity, const ClaimPairs& pairs,
+                              double confidence) {
+  const ClaimExpression& of = quantity.expression;
+  if (is_success(of, quantity)) {
+    return share_interval(pairs.results, pairs.scenarios, confidence);
   }
-  if (!std::isfinite(judged.estimate)) {
+  if (of.kind == ClaimExpression::Kind::subtract && is_success(of.operands[0], quantity) &&
+      is_success(of.operands[1], quantity)) {
+    return difference_interval(pairs.results, pairs.scenarios, confidence);
+  }
+  return mean_interval(pairs.results, pairs.scenarios, confidence);
+}
+
+/// Without interval or reason for an extreme.
+MadeInterval interval_of(const ClaimQuantity& quantity, const ClaimPairs& pairs,
+                         double confidence) {
+  switch (quantity.function) {
+    case Function::min:
+    case Function::max:
+      return {};
+    case Function::share:
+      return share_interval(pairs.results, pairs.scenarios, confidence);
+    case Function::mean:
+      return interval_of_mean(quantity, pairs, confidence);
+    case Function::quantile:
+      break;
+  }
+  return quantile_interval(pairs.results, pairs.scenarios, quantity.q, confidence);
+}
+
+void find_interval(const ClaimQuantity& quantity, const ClaimPairs& pairs, JudgedClaim& judged) {
+  const bool is_extreme = quantity.function == Function::min || quantity.function == Function::max;
+  if (!is_extreme && !std::isfinite(judged.estimate)) {
     judged.why_no_interval = "too many values are infinite";  // something over zero
     return;
   }
-  const auto seed = static_cast<std::uint64_t>(data.file.seed);
-  const double confidence = judged.claim.confidence;
-  if (quantity.function == Function::share) {
-    const auto found = share_interval(pairs.results, pairs.scenarios, seed, confidence);
-    judged.interval = found.interval;
-    judged.method = found.method;
-  } else {
-    judged.interval =
-        bootstrap_interval(pairs.results, pairs.scenarios, statistic_of(quantity),
-                           RandomStream(seed).sub("claim " + judged.claim.id), confidence);
-    judged.method = judged.interval ? "bootstrap of " + units_of(pairs.scenarios).words() : "";
-  }
-  if (!judged.interval) {
-    judged.why_no_interval = why_no_bootstrap(pairs.scenarios, confidence);
-    judged.has_too_few = !judged.why_no_interval.empty();
-    if (judged.why_no_interval.empty()) {
-      judged.why_no_interval = "some resamples are not finite";
-    }
-  }
+  const MadeInterval made = interval_of(quantity, pairs, judged.claim.confidence);
+  judged.interval = made.interval;
+  judged.method = made.method;
+  judged.why_no_interval = made.why_none;
+  judged.has_too_few = made.why_none.starts_with("too few");
 }
 
-Verdict verdict_of(const ClaimQuantity& quantity, const ClaimRange& range,
-                   const JudgedClaim& judged) {
-  if (quantity.function == Function::min || quantity.function == Function::max) {
-    return range.contains(judged.estimate) ? Verdict::holds : Verdict::fails;
-  }
-  if (!judged.interval) {
+Verdict verdict_of(const ClaimRange& range, const std::optional<Interval>& interval) {
+  if (!interval) {
     return Verdict::undecided;
   }
-  const auto [low, high] = *judged.interval;
+  const auto [low, high] = *interval;
   if (range.contains(low) && range.contains(high)) {
     return Verdict::holds;
   }
   return range.meets(low, high) ? Verdict::undecided : Verdict::fails;
+}
+
+/// The least 1 - confidence of an interval that decides the claim: 1e-9 or less is 1e-9.
+double p_of(const ClaimQuantity& quantity, const ClaimPairs& pairs, const ClaimRange& range) {
+  const auto is_decided = [&](double log_p) {
+    const double confidence = 1 - std::pow(10, log_p);
+    return verdict_of(range, interval_of(quantity, pairs, confidence).interval) !=
+           Verdict::undecided;
+  };
+  double undecided = -9;
+  double decided = -1e-6;
+  if (is_decided(undecided)) {
+    return std::pow(10, undecided);
+  }
+  if (!is_decided(decided)) {
+    return 1;
+  }
+  for (int step = 0; step < 24; ++step) {
+    const double middle = (undecided + decided) / 2;
+    (is_decided(middle) ? decided : undecided) = middle;
+  }
+  return std::pow(10, decided);
+}
+
+std::string stated_of(const StudyData& data, const ClaimEntry& claim) {
+  const auto found = data.statements.find(claim.id);
+  if (found == data.statements.end() || found->second.runs == 0) {
+    return "";
+  }
+  return std::string(found->second.changed ? "changed" : "added") + " after " +
+         host::counted(found->second.runs, "run");
 }
 }  // namespace
 
@@ -109,6 +155,7 @@ std::vector<Problem> check_claim(const ClaimEntry& claim, const std::vector<std:
 JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
   JudgedClaim judged;
   judged.claim = claim;
+  judged.stated = stated_of(data, claim);
   try {
     const std::vector<std::string> names = names_of(data.pipelines);
     const ClaimQuantity quantity = read_quantity(claim.that, names);
@@ -120,10 +167,14 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
     judged.measured = std::any_of(quantity.values.begin(), quantity.values.end(),
                                   [](const ClaimValue& value) { return is_measured(value.name); });
     if (judged.used > 0) {
-      std::vector<double> results = pairs.results;
-      judged.estimate = statistic_of(quantity)(results);
-      find_interval(data, quantity, pairs, judged);
-      judged.verdict = verdict_of(quantity, range, judged);
+      judged.estimate = estimate_of(quantity, pairs.results);
+      find_interval(quantity, pairs, judged);
+      if (quantity.function == Function::min || quantity.function == Function::max) {
+        judged.verdict = range.contains(judged.estimate) ? Verdict::holds : Verdict::fails;
+      } else {
+        judged.verdict = verdict_of(range, judged.interval);
+        judged.p = std::isfinite(judged.estimate) ? p_of(quantity, pairs, range) : kNone;
+      }
     }
     say(judged, range, quantity, pairs, data);
   } catch (const Error& error) {
@@ -132,6 +183,50 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
     judged.reasons = host::sentence("The claim cannot be read: " + std::string(error.what()));
   }
   return judged;
+}
+
+std::vector<JudgedClaim> judge_claims(const StudyData& data) {
+  std::vector<JudgedClaim> all;
+  for (const ClaimEntry& claim : data.file.claims) {
+    all.push_back(judge_claim(data, claim));
+  }
+  adjust(all);
+  return all;
+}
+
+void adjust(std::vector<JudgedClaim>& claims) {
+  std::vector<double> p;
+  for (const JudgedClaim& judged : claims) {
+    p.push_back(judged.p);
+  }
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t at = 0; at < claims.size(); ++at) {
+    claims[at].p_holm = adjusted[at];
+  }
+}
+
+std::string multiplicity(const std::vector<JudgedClaim>& claims) {
+  std::size_t tested = 0;
+  std::size_t decided = 0;
+  std::string lost;
+  for (const JudgedClaim& judged : claims) {
+    tested += std::isnan(judged.p) ? 0 : 1;
+    const bool is_decided = !std::isnan(judged.p) &&
+                            (judged.verdict == Verdict::holds || judged.verdict == Verdict::fails);
+    decided += is_decided ? 1 : 0;
+    if (is_decided && judged.p_holm > 1 - judged.claim.confidence) {
+      lost += (lost.empty() ? "" : ", ") + judged.claim.id + " (p " +
+              host::with_digits(judged.p, 2) + ", adjusted " + host::with_digits(judged.p_holm, 2) +
+              ")";
+    }
+  }
+  if (tested < 2 || decided == 0) {
+    return "";
+  }
+  return "Each verdict is of its claim alone; with Holm's correction over all " +
+         std::to_string(tested) + " that have an interval " +
+         (lost.empty() ? "all decided ones stay decided."
+                       : "these become undecided: " + lost + ".");
 }
 
 std::vector<std::string> common_reasons(const std::vector<JudgedClaim>& claims) {
@@ -165,10 +260,5 @@ bool is_yes_or_no(std::string_view value) {
 bool is_of_every_run(std::string_view value) {
   return is_yes_or_no(value) || value == "flight.collisions" ||
          value == "flight.min_separation_m" || value == "peak_memory_mb";
-}
-
-bool is_measured(std::string_view value) {
-  const bool is_of_flight = value == "time_s" || value == "flight.time_s";
-  return (value.ends_with("time_s") && !is_of_flight) || value.ends_with("memory_mb");
 }
 }  // namespace altiplan::study

@@ -30,15 +30,18 @@ struct JudgedClaim {
   Verdict verdict = Verdict::no_data;
   double estimate = kNone;
   std::optional<Interval> interval;
-  std::string method;           ///< of the interval: "bootstrap over 100 scenarios"; "" without one
-  std::size_t used = 0;         ///< pairs in which every named value exists
-  std::size_t pairs = 0;        ///< all pairs (scenario, repetition) with a run
-  bool lacks_runs = false;      ///< no pair has runs of all pipelines named
-  bool has_too_few = false;     ///< scenarios or repetitions for an interval
-  bool measured = false;        ///< names a time or memory, which vary between equal runs
+  std::string method;        ///< of the interval: "order statistics, 100 scenarios"; "" without one
+  std::size_t used = 0;      ///< pairs in which every named value exists
+  std::size_t pairs = 0;     ///< all pairs (scenario, repetition) with a run
+  bool lacks_runs = false;   ///< no pair has runs of all pipelines named
+  bool has_too_few = false;  ///< scenarios or repetitions for an interval
+  bool measured = false;     ///< names a time or memory, which vary between equal runs
   std::string why_no_interval;  ///< "too few scenarios: at least 6 for 95 %"; "" with one
-  std::string words;            ///< the verdict and its reasons, in sentences
-  std::string reasons;          ///< the reasons alone, shown beside expression, range and verdict
+  double p = kNone;       ///< 1 - the highest confidence that decides the claim; NaN of an extreme
+  double p_holm = kNone;  ///< adjusted for all claims that are judged together
+  std::string stated;     ///< "changed after 12 runs"; "" if it reads as before the first run
+  std::string words;      ///< the verdict and its reasons, in sentences
+  std::string reasons;    ///< the reasons alone, shown beside expression, range and verdict
 };
 
 /// The required range of the claim: "<= 0.95", "within 0.9..1.1".
@@ -47,6 +50,13 @@ std::string wanted(const ClaimEntry& claim);
 /// Evaluates the claim on the study's runs. A value counts if its run has it and solved the
 /// problem; values that describe failures (is_of_every_run) count in every run that has them.
 JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim);
+
+/// All claims of the study, with `p` and `p_holm`.
+std::vector<JudgedClaim> judge_claims(const StudyData& data);
+/// A sentence on what Holm's correction leaves of the verdicts of several claims; "" of fewer.
+std::string multiplicity(const std::vector<JudgedClaim>& claims);
+/// Fills in `p_holm`.
+void adjust(std::vector<JudgedClaim>& claims);
 
 /// A sentence for each reason that may be that of many claims, without runs or with too few, and
 /// the claims; their own words do not say it again.
@@ -63,6 +73,4 @@ bool is_yes_or_no(std::string_view value);
 /// Those, flight.collisions, flight.min_separation_m and peak_memory_mb: claims on these are about
 /// the runs that did not solve as well.
 bool is_of_every_run(std::string_view value);
-/// Times and memory: names that end in time_s or memory_mb.
-bool is_measured(std::string_view value);
 }  // namespace altiplan::study

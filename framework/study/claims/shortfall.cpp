@@ -39,8 +39,7 @@ class Verdicts {
 
  private:
   Interval interval(std::size_t successes, std::size_t units) const {
-    return wilson(std::int64_t(successes), std::int64_t(units), confidence_)
-        .value_or(Interval{0, 1});
+    return wilson(double(successes), double(units), confidence_).value_or(Interval{0, 1});
   }
   bool contains(const Interval& interval) const {
     return range_.contains(interval.low) && range_.contains(interval.high);
@@ -86,12 +85,14 @@ std::string of_independent(const Verdicts& verdicts, const Units& units,
                    std::to_string(kMaxUnits) + (units.of_scenarios ? " scenarios" : " repetitions");
 }
 
-/// With repetitions, the interval is Wilson's if the scenarios all agree, else the bootstrap's,
-/// which may be as narrow as a point but needs a number of scenarios.
-std::string of_repeated(const Verdicts& verdicts, const Units& units, std::size_t fewest,
+/// With repetitions, the interval is Wilson's of the scenarios if all agree, else at best that of
+/// as many independent pairs.
+std::string of_repeated(const Verdicts& verdicts, const Units& units, std::size_t pairs,
                         const std::string& confidence) {
   const auto is_decided = [&](std::size_t n) {
-    return n >= fewest || verdicts.may_hold_agreeing(n) || verdicts.may_fail(n);
+    const std::size_t repeated = n * pairs / units.count;
+    return verdicts.may_hold_agreeing(n) || verdicts.may_hold(repeated) ||
+           verdicts.may_fail(repeated);
   };
   if (is_decided(units.count)) {
     return "";
@@ -107,16 +108,15 @@ std::string shortfall(const ClaimEntry& claim, const ClaimQuantity& quantity,
   if (groups.empty() || quantity.function == Function::min || quantity.function == Function::max) {
     return "";
   }
+  const Units units = units_of(groups);
   if (quantity.function != Function::share) {
-    const std::string why = why_no_bootstrap(groups, claim.confidence);
+    const std::string why = why_no_interval(units, claim.confidence, quantity.q);
     return why.empty() ? "" : "will be undecided: " + why;
   }
   const ClaimRange range = read_range(claim.is);
   const Verdicts verdicts(range, claim.confidence);
-  const Units units = units_of(groups);
   const std::string confidence = " for " + host::per_cent(claim.confidence);
-  return units.count == groups.size()
-             ? of_independent(verdicts, units, confidence)
-             : of_repeated(verdicts, units, fewest_units(claim.confidence), confidence);
+  return units.count == groups.size() ? of_independent(verdicts, units, confidence)
+                                      : of_repeated(verdicts, units, groups.size(), confidence);
 }
 }  // namespace altiplan::study

@@ -188,10 +188,8 @@ class Comparer {
     }
     change.before = median(pairs.first);
     change.after = median(pairs.second);
-    const RandomStream stream =
-        RandomStream(std::uint64_t(first_.file.seed)).sub("compare", pipeline);
-    change.effect = paired_effect(pairs, is_ratio, stream, kConfidence);
-    change.why_no_interval = why_no_bootstrap(pairs.groups, kConfidence);
+    change.effect = paired_effect(pairs, is_ratio, kConfidence);
+    change.why_no_interval = why_no_interval(units_of(pairs.groups), kConfidence);
     change.p = change.effect.test ? change.effect.test->p : kNone;
     if (pairs.first == pairs.second) {
       change.verdict = MetricChange::Verdict::same;

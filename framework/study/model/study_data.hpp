@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,10 +22,18 @@ struct RunRow : RunFacts {
   bool solved() const { return outcome == "solved"; }
 };
 
+/// When a claim came into the study as it reads now.
+struct ClaimStatement {
+  std::string time;      ///< UTC, 2026-11-21T18:00:00Z; "" if it was not recorded
+  std::size_t runs = 0;  ///< that were stored by then
+  bool changed = false;  ///< it read otherwise before
+};
+
 /// All runs of a study in memory, from one store or several shards of it.
 struct StudyData {
-  StudyFile file;           ///< the study as written
-  std::size_t planned = 0;  ///< number of runs in the study; 0 if unknown
+  StudyFile file;                                    ///< the study as written
+  std::size_t planned = 0;                           ///< number of runs in the study; 0 if unknown
+  std::map<std::string, ClaimStatement> statements;  ///< by the claim's id
   std::vector<std::string> stores;
   std::vector<StoredVariant> scenarios;
   std::vector<StoredVariant> pipelines;
@@ -41,6 +50,12 @@ struct StudyData {
   /// Index of the column; columns.size() if there is none.
   std::size_t column(std::string_view name) const;
 };
+
+/// Times and memory, which vary between equal runs: names that end in time_s or memory_mb.
+bool is_measured(std::string_view value);
+/// One per pipeline: true if all repetitions of each scenario have the same outcome and values, but
+/// for times and memory. Its planner draws no random numbers, and they are one run.
+std::vector<bool> repeat_themselves(const StudyData& data);
 
 /// True if lower is better; by the metric's name if the study does not specify it.
 Better better(const StudyData& data, std::string_view metric);

@@ -2,11 +2,9 @@
 #include "study/report/analysis.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <set>
-#include <thread>
 
 #include "study/claims/claims.hpp"
 #include "study/figures/text.hpp"
@@ -19,20 +17,33 @@ std::vector<Success> success_of(const StudyData& data) {
   struct Results {
     std::vector<double> solved;  // 0 or 1
     std::vector<std::size_t> scenarios;
+
+    void add(const RunRow& row, bool is_once) {
+      if (!is_once || scenarios.empty() || scenarios.back() != row.scenario) {
+        solved.push_back(row.solved() ? 1 : 0);
+        scenarios.push_back(row.scenario);
+      }
+    }
+    MadeInterval interval() const { return share_interval(solved, scenarios, kConfidence); }
   };
   std::vector<Success> all(data.pipelines.size());
   std::vector<Results> results(data.pipelines.size());
+  std::vector<Results> of_valid(data.pipelines.size());
   std::vector<std::map<std::string, std::size_t>> counts(data.pipelines.size());
+  const std::vector<bool> repeat = repeat_themselves(data);
   for (const RunRow& row : data.rows) {
     ++all[row.pipeline].runs;
     all[row.pipeline].solved += row.solved();
-    results[row.pipeline].solved.push_back(row.solved() ? 1 : 0);
-    results[row.pipeline].scenarios.push_back(row.scenario);
+    results[row.pipeline].add(row, repeat[row.pipeline]);
+    if (row.outcome != "invalid_problem") {
+      ++all[row.pipeline].valid;
+      of_valid[row.pipeline].add(row, repeat[row.pipeline]);
+    }
     ++counts[row.pipeline][row.outcome];
   }
   for (std::size_t p = 0; p < all.size(); ++p) {
-    all[p].interval = share_interval(results[p].solved, results[p].scenarios,
-                                     std::uint64_t(data.file.seed), kConfidence);
+    all[p].interval = results[p].interval();
+    all[p].of_valid = of_valid[p].interval();
     for (const std::string& outcome : outcome_order()) {
       if (const auto found = counts[p].find(outcome); found != counts[p].end()) {
         all[p].outcomes.emplace_back(*found);
@@ -48,22 +59,28 @@ std::vector<SuccessComparison> compare_success(const StudyData& data,
                                                const std::vector<Pair>& pairs) {
   std::vector<SuccessComparison> all;
   std::vector<double> p;
+  const std::vector<bool> repeat = repeat_themselves(data);
   for (std::size_t against = 0; against < data.pipelines.size(); ++against) {
     for (std::size_t pipeline = against + 1; pipeline < data.pipelines.size(); ++pipeline) {
       SuccessComparison comparison;
       comparison.pipeline = pipeline;
       comparison.against = against;
       PairedSample sample;
+      std::vector<double> differences;
+      const bool is_once = repeat[pipeline] && repeat[against];
       for (const Pair& pair : pairs) {
-        if (pair.rows[pipeline] != kNoRow && pair.rows[against] != kNoRow) {
+        if (pair.rows[pipeline] != kNoRow && pair.rows[against] != kNoRow &&
+            !(is_once && sample.has(pair.scenario))) {
           const bool solved = data.rows[pair.rows[pipeline]].solved();
           const bool other_solved = data.rows[pair.rows[against]].solved();
           comparison.only_pipeline += solved && !other_solved;
           comparison.only_against += other_solved && !solved;
           sample.add(other_solved ? 1 : 0, solved ? 1 : 0, pair.scenario);
+          differences.push_back(sample.second.back() - sample.first.back());
         }
       }
       comparison.pairs = sample.size();
+      comparison.difference = difference_interval(differences, sample.groups, kConfidence);
       comparison.test = success_test(sample);
       p.push_back(comparison.test.p);
       all.push_back(comparison);
@@ -82,6 +99,7 @@ class MetricAnalyser {
   MetricAnalyser(const StudyData& data, const std::vector<Pair>& pairs, const std::string& metric)
       : data_(data),
         pairs_(pairs),
+        repeat_(repeat_themselves(data)),
         column_(data.column(metric)),
         is_of_every_run_(is_of_every_run(metric)) {
     analysis_.metric = metric;
@@ -132,50 +150,30 @@ class MetricAnalyser {
     }
   }
 
-  /// On all cores, since resampling is slow. Each comparison has its own random stream, so that
-  /// results do not depend on the number of cores.
   void compare_all() {
-    std::vector<std::pair<std::size_t, std::size_t>> all;
     for (std::size_t a = 0; a < data_.pipelines.size(); ++a) {
       for (std::size_t b = a + 1; b < data_.pipelines.size(); ++b) {
-        all.emplace_back(a, b);
+        analysis_.comparisons.push_back(compare(a, b));
       }
     }
-    analysis_.comparisons.resize(all.size());
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-      for (std::size_t at = next++; at < all.size(); at = next++) {
-        analysis_.comparisons[at] = compare(all[at].first, all[at].second);
-      }
-    };
-    std::vector<std::jthread> others;
-    for (unsigned n = 1; n < std::min<std::size_t>(std::thread::hardware_concurrency(), all.size());
-         ++n) {
-      others.emplace_back(work);
-    }
-    work();
   }
 
   Comparison compare(std::size_t against, std::size_t pipeline) const {
     Comparison comparison;
     comparison.pipeline = pipeline;
     comparison.against = against;
+    const bool is_once = repeat_[against] && repeat_[pipeline];
     PairedSample sample;
     for (const Pair& pair : pairs_) {
       comparison.pairs += pair.rows[against] != kNoRow && pair.rows[pipeline] != kNoRow;
       const double x = value(pair.rows[against]);
       const double y = value(pair.rows[pipeline]);
-      if (!std::isnan(x) && !std::isnan(y)) {
+      if (!std::isnan(x) && !std::isnan(y) && !(is_once && sample.has(pair.scenario))) {
         sample.add(x, y, pair.scenario);
       }
     }
     comparison.used = sample.size();
-    const RandomStream stream =
-        RandomStream(std::uint64_t(data_.file.seed))
-            .sub("report " + analysis_.metric + " " + data_.pipelines[against].name + " " +
-                 data_.pipelines[pipeline].name);
-    comparison.effect = paired_effect(sample, analysis_.is_ratio, stream, kConfidence,
-                                      resamples(pairs_.size(), data_.pipelines.size()));
+    comparison.effect = paired_effect(sample, analysis_.is_ratio, kConfidence);
     return comparison;
   }
 
@@ -230,6 +228,7 @@ class MetricAnalyser {
 
   const StudyData& data_;
   const std::vector<Pair>& pairs_;
+  std::vector<bool> repeat_;
   std::size_t column_;
   bool is_of_every_run_;
   MetricAnalysis analysis_;
@@ -289,12 +288,6 @@ Trade trade_of(const StudyData& data, const std::vector<Pair>& pairs,
   return trade;
 }
 }  // namespace
-
-std::size_t resamples(std::size_t pairs, std::size_t pipelines) {
-  constexpr std::size_t kDraws = 1'000'000'000;
-  const std::size_t drawn = pairs * pipelines * (pipelines - 1) / 2;
-  return std::clamp<std::size_t>(drawn == 0 ? kResamples : kDraws / drawn, 1000, kResamples);
-}
 
 Analysis analyse(const StudyData& data, bool times) {
   Analysis analysis;

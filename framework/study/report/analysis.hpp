@@ -30,7 +30,9 @@ Absent take_absent(StudyData& data);
 struct Success {
   std::size_t runs = 0;
   std::size_t solved = 0;
-  ShareInterval interval;
+  MadeInterval interval;
+  std::size_t valid = 0;                                      ///< runs whose problem is valid
+  MadeInterval of_valid;                                      ///< of the share of those that solved
   std::vector<std::pair<std::string, std::size_t>> outcomes;  ///< those that occur, solved first
 };
 
@@ -39,10 +41,11 @@ struct Success {
 struct SuccessComparison {
   std::size_t pipeline = 0;
   std::size_t against = 0;
-  std::size_t pairs = 0;
+  std::size_t pairs = 0;          ///< one per scenario if both repeat themselves
   std::size_t only_pipeline = 0;  ///< pairs that only this one solved
   std::size_t only_against = 0;
-  SuccessTest test;  ///< its first is the pipeline compared against
+  MadeInterval difference;  ///< of its share of solved pairs from the other's
+  SuccessTest test;         ///< its first is the pipeline compared against
   double p_holm = kNone;
 };
 
@@ -108,10 +111,6 @@ struct Analysis {
 
 /// `data` and `times` as for in_order.
 Analysis analyse(const StudyData& data, bool times);
-
-/// Resamples of a comparison's interval: kResamples, or fewer (at least 1,000) if a metric would
-/// take a minute for the number of pipelines and pairs.
-std::size_t resamples(std::size_t pairs, std::size_t pipelines);
 
 /// True for outcomes caused by the plugin or its build, not by the problem.
 bool unexplained(std::string_view outcome);

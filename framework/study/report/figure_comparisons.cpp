@@ -105,7 +105,7 @@ std::string caption_of(const MetricAnalysis& metric, const Rows& rows) {
   const bool less_is_better = metric.better == Better::lower;
   std::string caption = std::string("Median over the pairs that both solved of ") +
                         (metric.is_ratio ? "A / B" : "A − B") +
-                        ", with its 95 % bootstrap interval. Left of the dashed line A, the first "
+                        ", with its 95 % interval. Left of the dashed line A, the first "
                         "pipeline, has "
                         "less" +
                         (less_is_better ? " (is better)" : "") + ", right of it more" +

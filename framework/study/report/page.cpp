@@ -108,6 +108,9 @@ std::string claims_html(const Content& content) {
   for (const std::string& sentence : common_reasons(content.claims)) {
     out += paragraph(sentence);
   }
+  if (const std::string all = multiplicity(content.claims); !all.empty()) {
+    out += paragraph(all);
+  }
   std::string list;
   for (const JudgedClaim& judged : content.claims) {
     if (judged.lacks_runs) {

@@ -45,8 +45,8 @@ std::string interval_of(const std::optional<Interval>& interval, int digits = 3)
              : "–";
 }
 
-std::string share_interval_text(const Success& success) {
-  const auto& interval = success.interval.interval;
+std::string share_interval_text(const MadeInterval& made) {
+  const auto& interval = made.interval;
   return interval ? "[" + percent(interval->low) + ", " + percent(interval->high) + "]" : "–";
 }
 
@@ -118,29 +118,49 @@ Table failure_table(const Content& content) {
   return table;
 }
 
+namespace {
+/// "2026-11-21T18:00:00Z, before the first run", "after 12 runs".
+std::string stated(const Content& content, const JudgedClaim& judged) {
+  const auto found = content.data.statements.find(judged.claim.id);
+  if (found == content.data.statements.end()) {
+    return "–";
+  }
+  const std::string when = judged.stated.empty() ? "before the first run" : judged.stated;
+  const bool has_time = content.times && !found->second.time.empty();
+  return has_time ? found->second.time + ", " + when : when;
+}
+}  // namespace
+
 Table claim_table(const Content& content) {
   Table table{"verdicts",
               "Claims and their verdicts",
-              columns({"claim", "that", "claimed", "verdict", "#estimate", "#interval",
-                       "#pairs used", "#of"}),
+              columns({"claim", "that", "claimed", "verdict", "#estimate", "#interval", "#p",
+                       "#p (Holm)", "#pairs used", "#of", "stated"}),
               {}};
   for (const JudgedClaim& judged : content.claims) {
     table.rows.push_back({judged.claim.id, judged.claim.that, wanted(judged.claim),
                           std::string(name_of(judged.verdict)), number(judged.estimate),
-                          interval_of(judged.interval, 4), count(judged.used),
-                          count(judged.pairs)});
+                          interval_of(judged.interval, 4), p_value(judged.p),
+                          p_value(judged.p_holm), count(judged.used), count(judged.pairs),
+                          stated(content, judged)});
   }
   return table;
 }
 
 Table success_table(const Content& content) {
-  Table table{"success",
-              "Share of solved runs, with its 95 % interval",
-              columns({"pipeline", "#runs", "#solved", "#share", "#interval", "other outcomes"}),
-              {}};
+  Table table{
+      "success",
+      "Share of solved runs, of all and of those whose problem is valid (start and goal are "
+      "free), with 95 % intervals",
+      columns({"pipeline", "#runs", "#solved", "#share", "#interval", "#of valid problems",
+               "#interval", "other outcomes"}),
+      {}};
   for (std::size_t p = 0; p < content.data.pipelines.size(); ++p) {
     const Success& success = content.analysis.success[p];
-    const double share = success.runs > 0 ? double(success.solved) / double(success.runs) : kNone;
+    const auto share_of = [&](std::size_t runs) {
+      const double share = runs > 0 ? double(success.solved) / double(runs) : kNone;
+      return Cell(percent(share), share);
+    };
     std::string others;
     for (const auto& [outcome, runs] : success.outcomes) {
       if (outcome != "solved") {
@@ -148,7 +168,8 @@ Table success_table(const Content& content) {
       }
     }
     table.rows.push_back({name(content, p), count(success.runs), count(success.solved),
-                          Cell(percent(share), share), share_interval_text(success),
+                          share_of(success.runs), share_interval_text(success.interval),
+                          share_of(success.valid), share_interval_text(success.of_valid),
                           others.empty() ? "–" : others});
   }
   return table;
@@ -158,15 +179,20 @@ Table success_comparison_table(const Content& content) {
   Table table{
       "success-pairs",
       "Success, pipeline against pipeline: exact sign test over n scenarios (repetitions "
-      "if there is one scenario), Holm's correction over all rows",
+      "if there is one scenario), Holm's correction over all rows; the difference of the shares "
+      "with Tango's interval",
       columns({"pipeline", "against", "#n", "#it more often", "#the other more often", "#p",
-               "#p (Holm)", "#runs of both", "#it alone solved", "#the other alone solved"}),
+               "#p (Holm)", "#difference", "#95 % interval", "#runs of both", "#it alone solved",
+               "#the other alone solved"}),
       {}};
   for (const SuccessComparison& comparison : content.analysis.success_comparisons) {
+    const double difference = (double(comparison.only_pipeline) - double(comparison.only_against)) /
+                              double(comparison.pairs);
     table.rows.push_back({name(content, comparison.pipeline), name(content, comparison.against),
                           units(comparison.test.units), count(comparison.test.second_more),
                           count(comparison.test.first_more), p_value(comparison.test.p),
-                          p_value(comparison.p_holm), count(comparison.pairs),
+                          p_value(comparison.p_holm), number(difference, 3),
+                          interval_of(comparison.difference.interval), count(comparison.pairs),
                           count(comparison.only_pipeline), count(comparison.only_against)});
   }
   return table;

@@ -134,27 +134,30 @@ std::vector<std::string> method_text(const Content& content) {
       "counts if its run solved and has it as a finite number; values that describe failures "
       "(reached, collisions, minimum separation) count in every run that has them.");
   text.emplace_back(
-      "Success: the 95 % interval of a share is Wilson's score interval if runs are independent "
-      "(one per scenario, or one scenario); if all runs of all scenarios agree, Wilson's with a "
-      "scenario as one trial; otherwise the bootstrap's, as below. Claims on a share use the same. "
+      "Success: the 95 % interval of a share is Wilson's score interval. With repetitions it is "
+      "that "
+      "of the number of independent runs whose share would vary as much as that of these does "
+      "between scenarios (Korn and Graubard 1998). Claims on a share use the same. "
       "Two pipelines are compared by the exact two-sided sign test on the numbers of scenarios in "
       "which either solved more of the repetitions that both have run; with one repetition this is "
       "McNemar's test. With one scenario, repetitions are counted. Holm's step-down correction is "
-      "over all pairs of pipelines.");
+      "over all pairs of pipelines. The difference of their shares has Tango's score interval "
+      "(1998), which has a width without any difference too.");
   text.emplace_back(
       "Metrics: a pipeline is compared against another on the pairs that both solved. The effect "
       "is the median of the ratio of its value to the other's if all values of the metric are "
-      "positive, otherwise of the difference. Its 95 % interval is the percentile bootstrap over " +
-      grouped(resamples(pairs_of(content.data).size(), content.data.pipelines.size())) +
-      " resamples of scenarios with all their repetitions (of repetitions if there is one "
-      "scenario), seeded by the study's seed " +
-      std::to_string(content.data.file.seed) + "; of fewer than " +
+      "positive, otherwise of the difference. Its 95 % interval lies between order statistics "
+      "(fractional ranks, Hutson 1999) of as many independent pairs as above; of fewer than " +
       std::to_string(fewest_units(kConfidence)) +
-      " there is none, since not even their whole range " +
-      "contains the median with that confidence.");
+      " scenarios (of one: repetitions) there is none, since not even their whole range contains "
+      "the median with that confidence.");
   text.emplace_back(
-      "Wilcoxon's signed-rank test is two-sided on the differences, one per scenario (the median "
-      "over its repetitions) or, with one scenario, one per repetition; zeros are dropped, ties "
+      "Wilcoxon's signed-rank test is two-sided on the differences (of ratios on their "
+      "logarithms), "
+      "one per scenario (the median over its repetitions) or, with one scenario, one per "
+      "repetition "
+      "(repetitions of a pipeline are one run if all their values but times and memory are equal); "
+      "zeros are dropped, ties "
       "share the mean of their ranks; exact for at most 50 differences, otherwise by the normal "
       "distribution with correction for ties, not for continuity. n is the number of differences. "
       "Rank-biserial: matched pairs, -1 if the pipeline always has less than the one it is "

@@ -76,16 +76,16 @@ Builds builds_of(const StudyData& data, const ResultSource& results) {
   return {{versions.begin(), versions.end()}, {plugins.begin(), plugins.end()}};
 }
 
-void judge_claims(Content& content) {
-  for (const ClaimEntry& claim : content.data.file.claims) {
-    JudgedClaim judged = judge_claim(content.data, claim);
+void take_claims(Content& content) {
+  for (JudgedClaim& judged : judge_claims(content.data)) {
     if (judged.measured && !content.times) {
-      content.claims_left_out.push_back("The claim '" + claim.id +
+      content.claims_left_out.push_back("The claim '" + judged.claim.id +
                                         "' is about measured times or memory, and is omitted.");
     } else {
       content.claims.push_back(std::move(judged));
     }
   }
+  adjust(content.claims);  // the others vary between equal runs
 }
 
 void draw(Content& content) {
@@ -130,7 +130,7 @@ Content content_of(const Source& source, const Options& options) {
   content.times = options.times;
   content.data = in_order(source.data, options.times);
   options.begins("judging the claims");
-  judge_claims(content);
+  take_claims(content);
   content.absent = take_absent(content.data);
   content.short_names = short_names(content.data);
   content.title = printable(options.title.empty() ? content.data.file.name : options.title);

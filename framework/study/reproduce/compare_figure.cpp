@@ -27,8 +27,7 @@ struct RangeOfWhole {
 };
 
 /// An extreme of a part is no farther out than that of the whole.
-RangeOfWhole range_of_whole(const StudyData& data, const ClaimQuantity& quantity,
-                            const JudgedClaim& found) {
+RangeOfWhole range_of_whole(const ClaimQuantity& quantity, const JudgedClaim& found) {
   if (!std::isfinite(found.estimate)) {
     return {std::nullopt, found.why_no_interval};
   }
@@ -38,36 +37,19 @@ RangeOfWhole range_of_whole(const StudyData& data, const ClaimQuantity& quantity
   if (quantity.function == Function::max) {
     return {Interval{found.estimate, kInfinity}, ""};
   }
-  if (quantity.function == Function::quantile && found.interval) {
-    // A bootstrap does not see beyond the sample, where a far quantile of a small one lies.
-    const Units units = units_of(pairs_of(data, quantity).scenarios);
-    const std::size_t fewest = fewest_units(kSampleConfidence, quantity.q);
-    if (units.count < fewest) {
-      return {std::nullopt, std::string("too few ") +
-                                (units.of_scenarios ? "scenarios" : "repetitions") + ": at least " +
-                                std::to_string(fewest) + " for " +
-                                host::per_cent(kSampleConfidence)};
-    }
-  }
   return {found.interval, found.why_no_interval};
 }
 
-/// True for a mean of equal values, whose bootstrap has no width though others may be rare.
-bool sees_no_variation(const ClaimQuantity& quantity, const std::optional<Interval>& range) {
-  return quantity.function == Function::mean && range && range->low == range->high;
-}
-
-ReproducedFigure compare_sample(const StudyData& data, const ClaimQuantity& quantity,
-                                const JudgedClaim& sampled, ReproducedFigure result) {
+ReproducedFigure compare_sample(const ClaimQuantity& quantity, const JudgedClaim& sampled,
+                                ReproducedFigure result) {
   const PrintedFigure printed = *read_figure(result.figure->documentation);
-  const RangeOfWhole whole = range_of_whole(data, quantity, sampled);
-  const bool is_within = whole.range && printed.is_within(*whole.range);
-  if (!is_within && sees_no_variation(quantity, whole.range)) {
-    result.mark = Mark::too_few;
-    result.why = "too few: all values are equal";
-    return result;
-  }
-  result.mark = !whole.range ? Mark::too_few : is_within ? Mark::within : Mark::differs;
+  const RangeOfWhole whole = range_of_whole(quantity, sampled);
+  // Of a mean of equal values there is no interval, though others may be rare.
+  const bool is_equal =
+      !sampled.has_too_few && printed.is_within({sampled.estimate, sampled.estimate});
+  result.mark = whole.range ? (printed.is_within(*whole.range) ? Mark::within : Mark::differs)
+                : is_equal  ? Mark::within
+                            : Mark::too_few;
   result.why = whole.range ? printed.range(*whole.range) : whole.why_none;
   return result;
 }
@@ -118,8 +100,7 @@ ReproducedFigure compare_figure(const StudyData& data, const PaperFigure& figure
     return result;
   }
   if (counts_pairs) {
-    const auto interval =
-        wilson(std::int64_t(found.used), std::int64_t(found.pairs), kSampleConfidence);
+    const auto interval = wilson(double(found.used), double(found.pairs), kSampleConfidence);
     result.mark = !interval                      ? Mark::too_few
                   : printed.is_within(*interval) ? Mark::within
                                                  : Mark::differs;
@@ -128,7 +109,7 @@ ReproducedFigure compare_figure(const StudyData& data, const PaperFigure& figure
   }
   ClaimEntry wide = figure.claim;
   wide.confidence = kSampleConfidence;
-  return compare_sample(data, quantity, figure.of_claim ? judge_claim(data, wide) : found,
+  return compare_sample(quantity, figure.of_claim ? judge_claim(data, wide) : found,
                         std::move(result));
 }
 }  // namespace altiplan::study

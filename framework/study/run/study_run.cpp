@@ -11,6 +11,7 @@
 #include "study/plan/study_selection.hpp"
 #include "study/run/machine.hpp"
 #include "study/run/study_worker.hpp"
+#include "study/store/claim_history.hpp"
 #include "study/store/place.hpp"
 #include "study/store/store.hpp"
 #include "study/workers/worker_pool.hpp"
@@ -131,13 +132,13 @@ class Study {
   void prepare(Store& store) const {
     if (!store.study().empty()) {
       expect_same_study(store);
-      drop_outdated(store);
     }
     store.set_study({{"name", plan_.file.name},
                      {"path", plan_.path.string()},
                      {"text", plan_.text},
                      {"source", plan_.source},
                      {"seed", std::to_string(plan_.file.seed)},
+                     {"claims", claim_history(store, plan_.file, this_session().started)},
                      {"planned", std::to_string(plan_.planned)}});
     const auto as_stored = [](const std::vector<Variant>& variants) {
       std::vector<StoredVariant> all;
@@ -147,6 +148,7 @@ class Study {
       return all;
     };
     store.add_variants(as_stored(plan_.scenarios), as_stored(plan_.pipelines));
+    drop_outdated(store);
   }
 
   /// Indices of the runs whose keys are not among these.

@@ -8,8 +8,8 @@
 namespace altiplan::study {
 
 // Statistics of studies whose scenarios have repetitions. Repetitions are not independent: tests
-// count each scenario once, bootstrap intervals resample whole scenarios. With a single scenario,
-// repetitions are counted and resampled. `groups` has the scenario of each value.
+// count each scenario once, intervals take values for as many independent ones as they are worth.
+// With a single scenario, repetitions are independent. `groups` has the scenario of each value.
 
 /// The units that a test counts.
 struct Units {
@@ -20,8 +20,36 @@ struct Units {
 };
 Units units_of(std::span<const std::size_t> groups);
 
-/// Why a bootstrap gives no interval: "too few scenarios: at least 6 for 95 %"; "" if it does.
-std::string why_no_bootstrap(std::span<const std::size_t> groups, double confidence);
+/// Why there is no interval of a median: "too few scenarios: at least 6 for 95 %"; "" if there is
+/// one. Likewise of another quantile q.
+std::string why_no_interval(const Units& units, double confidence, double q = 0.5);
+
+/// An interval and its method: "Wilson, 20 pairs", "order statistics, 20 scenarios"; or why there
+/// is none.
+struct MadeInterval {
+  std::optional<Interval> interval;
+  std::string method;
+  std::string why_none;
+};
+
+// Of values with repetitions, Wilson's and Tango's intervals and those of quantiles take the number
+// of pairs whose mean would vary as much as that of these does between scenarios: between the
+// number of scenarios and that of the values, the former if all agree. E. L. Korn, B. I. Graubard,
+// Survey Methodology 24, 1998, 193–201. All have neither interval nor reason without values.
+
+/// Of the share of results that are 1; the others are 0.
+MadeInterval share_interval(std::span<const double> results, std::span<const std::size_t> groups,
+                            double confidence);
+/// Of the difference of two shares: 1 if only the first of a pair succeeded, -1 if only the second,
+/// 0 otherwise.
+MadeInterval difference_interval(std::span<const double> differences,
+                                 std::span<const std::size_t> groups, double confidence);
+MadeInterval quantile_interval(std::span<const double> values, std::span<const std::size_t> groups,
+                               double q, double confidence);
+/// Of the mean over all values, whose units are the scenarios. None if more than half are equal and
+/// fewer of the others than scenarios are needed: how often these occur cannot be seen.
+MadeInterval mean_interval(std::span<const double> values, std::span<const std::size_t> groups,
+                           double confidence);
 
 /// The numbers of pairs of runs.
 struct PairedSample {
@@ -31,6 +59,8 @@ struct PairedSample {
 
   void add(double of_first, double of_second, std::size_t group);
   std::size_t size() const { return groups.size(); }
+  /// True if the last pair is of this scenario.
+  bool has(std::size_t group) const { return !groups.empty() && groups.back() == group; }
 };
 
 /// True if second / first is defined, false if only their difference is.
@@ -39,24 +69,12 @@ bool all_positive(const PairedSample& sample);
 /// The difference of the second from the first.
 struct PairedEffect {
   double median = kNone;             ///< over the pairs, of second / first or second - first
-  std::optional<Interval> interval;  ///< bootstrap
+  std::optional<Interval> interval;  ///< between order statistics
   Units units;                       ///< of the test
-  std::optional<Wilcoxon> test;      ///< on the units' medians of second - first
+  std::optional<Wilcoxon>
+      test;  ///< on the units' medians of second - first, of ratios of their log
 };
-PairedEffect paired_effect(const PairedSample& sample, bool is_ratio, const RandomStream& stream,
-                           double confidence, std::size_t resamples = kResamples);
-
-/// The interval of a share and its method: "Wilson, 20 pairs", "bootstrap of 20 scenarios".
-struct ShareInterval {
-  std::optional<Interval> interval;
-  std::string method;  ///< "" without an interval
-};
-/// `results` are 0 or 1; no interval if empty. Wilson's interval if they are independent: one per
-/// scenario, or all of one scenario. If all results agree, Wilson's with each scenario as one
-/// trial, since a bootstrap would see no variation. Otherwise the bootstrap.
-/// Seeded from the study, so that intervals of the same share are identical everywhere.
-ShareInterval share_interval(std::span<const double> results, std::span<const std::size_t> groups,
-                             std::uint64_t seed, double confidence);
+PairedEffect paired_effect(const PairedSample& sample, bool is_ratio, double confidence);
 
 /// The numbers of scenarios in which one of two succeeded more often than the other, and their
 /// exact sign test; with one pair per scenario this is McNemar's test.

@@ -4,6 +4,8 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 
 #include "study/statistics/statistics.hpp"
@@ -22,6 +24,7 @@ using Quiet = math::policies::policy<math::policies::domain_error<math::policies
                                      math::policies::promote_double<false>>;
 using Normal = math::normal_distribution<double, Quiet>;
 using ChiSquared = math::chi_squared_distribution<double, Quiet>;
+using Student = math::students_t_distribution<double, Quiet>;
 using Binomial = math::binomial_distribution<double, Quiet>;
 
 /// P(a < Z <= b), computed from the tail in which both are small.
@@ -75,6 +78,12 @@ double studentized_range_quantile(double p, int k) {
   }
   return high;
 }
+
+double student_quantile(double p, int degrees) {
+  return p > 0 && p < 1 && degrees >= 1 ? math::quantile(Student(degrees), p) : kNone;
+}
+
+double beta_probability(double a, double b, double x) { return math::ibeta(a, b, x, Quiet()); }
 
 // The binomial distribution of only_first among all discordant pairs, with chance 1/2, which is
 // symmetric.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 
 #include "study/statistics/statistics.hpp"
 
@@ -11,73 +9,46 @@ namespace {
 
 bool is_confidence(double confidence) { return confidence > 0 && confidence < 1; }
 
-/// The values of a sample by group; each value its own group if there is only one group.
-class Groups {
- public:
-  explicit Groups(std::span<const std::size_t> groups) {
-    std::map<std::size_t, std::vector<std::size_t>> members;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      members[groups[i]].push_back(i);
-    }
-    if (members.size() > 1) {
-      for (auto& [group, indices] : members) {
-        members_.push_back(std::move(indices));
-      }
-      return;
-    }
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      members_.push_back({i});
-    }
+/// The end of a monotone condition: true at `yes`, false at `no`.
+template <class Condition>
+double boundary(double yes, double no, const Condition& is_met) {
+  for (int step = 0; step < 100 && yes != no; ++step) {
+    const double middle = (yes + no) / 2;
+    (is_met(middle) ? yes : no) = middle;
   }
-
-  std::size_t count() const { return members_.size(); }
-
-  void draw(RandomStream stream, std::vector<std::size_t>& indices) const {
-    indices.clear();
-    for (std::size_t drawn = 0; drawn < members_.size(); ++drawn) {
-      const auto group = stream.integer(0, std::int64_t(members_.size()) - 1);
-      const std::vector<std::size_t>& members = members_[std::size_t(group)];
-      indices.insert(indices.end(), members.begin(), members.end());
-    }
-  }
-
- private:
-  std::vector<std::vector<std::size_t>> members_;
-};
-
-RandomStream stream_of(const RandomStream& stream, std::size_t number) {
-  return stream.sub("resample", number);
+  return yes;
 }
 
-/// NaN for an empty resample or an index outside the sample.
-double of_resample(std::span<const double> sample, const std::vector<std::size_t>& indices,
-                   const Statistic& statistic, std::vector<double>& drawn) {
-  drawn.clear();
-  for (const std::size_t index : indices) {
-    if (index >= sample.size()) {
-      return kNone;
-    }
-    drawn.push_back(sample[index]);
-  }
-  return drawn.empty() ? kNone : statistic(drawn);
+/// Tango's score of a true difference: standard normal if it is the true one.
+double tango_score(double gained, double lost, double pairs, double difference) {
+  // The chance of a loss that is most likely under this difference: the larger root of
+  // 2 n q² + b q + c.
+  const double b = -gained - lost + (2 * pairs - gained + lost) * difference;
+  const double c = -lost * difference * (1 - difference);
+  const double root = std::sqrt(std::max(b * b - 8 * pairs * c, 0.0));
+  const double q = (root - b) / (4 * pairs);
+  const double variance = pairs * (2 * q + difference * (1 - difference));
+  const double excess = gained - lost - pairs * difference;
+  return excess == 0 ? 0 : excess / std::sqrt(std::max(variance, 0.0));
 }
 
-std::optional<Interval> percentiles(std::vector<double> estimates, double confidence) {
-  if (!is_confidence(confidence)) {
-    return std::nullopt;
-  }
-  const double low = quantile_in_place(estimates, (1 - confidence) / 2);
-  const double high = quantile_in_place(estimates, (1 + confidence) / 2);
-  return std::isnan(low) || std::isnan(high) ? std::nullopt : std::optional(Interval{low, high});
+/// The sorted sample between its values, from rank 1.
+double at_rank(std::span<const double> sorted, double rank) {
+  const double place = std::clamp(rank - 1, 0.0, double(sorted.size() - 1));
+  const auto below = std::size_t(place);
+  const double above = sorted[std::min(below + 1, sorted.size() - 1)];
+  const double share = place - double(below);
+  return share == 0 || sorted[below] == above ? sorted[below]
+                                              : sorted[below] + share * (above - sorted[below]);
 }
 }  // namespace
 
-std::optional<Interval> wilson(std::int64_t successes, std::int64_t trials, double confidence) {
-  if (trials < 1 || successes < 0 || successes > trials || !is_confidence(confidence)) {
+std::optional<Interval> wilson(double successes, double trials, double confidence) {
+  if (!(trials > 0 && successes >= 0 && successes <= trials) || !is_confidence(confidence)) {
     return std::nullopt;
   }
-  const double n = double(trials);
-  const double p = double(successes) / n;
+  const double n = trials;
+  const double p = successes / n;
   const double z = normal_quantile((1 + confidence) / 2);
   const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
   const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
@@ -86,54 +57,75 @@ std::optional<Interval> wilson(std::int64_t successes, std::int64_t trials, doub
                   successes == trials ? 1 : std::clamp(centre + half, p, 1.0)};
 }
 
-std::optional<Interval> bootstrap_interval(std::span<const double> sample,
-                                           const Statistic& statistic,
-                                           const std::vector<std::vector<std::size_t>>& resamples,
-                                           double confidence) {
-  std::vector<double> estimates;
-  std::vector<double> drawn;
-  for (const std::vector<std::size_t>& indices : resamples) {
-    estimates.push_back(of_resample(sample, indices, statistic, drawn));
+std::optional<Interval> tango(double gained, double lost, double pairs, double confidence) {
+  // A margin for numbers of an effective sample, which are rounded.
+  if (!(pairs > 0 && gained >= 0 && lost >= 0 && gained + lost <= pairs * (1 + 1e-12)) ||
+      !is_confidence(confidence)) {
+    return std::nullopt;
   }
-  return percentiles(std::move(estimates), confidence);
+  const double z = normal_quantile((1 + confidence) / 2);
+  const double estimate = std::clamp((gained - lost) / pairs, -1.0, 1.0);
+  const auto is_within = [&](double difference) {
+    return std::abs(tango_score(gained, lost, pairs, difference)) <= z;
+  };
+  return Interval{boundary(estimate, -1, is_within), boundary(estimate, 1, is_within)};
 }
-
-std::vector<std::size_t> resample(std::span<const std::size_t> groups, const RandomStream& stream,
-                                  std::size_t number) {
-  std::vector<std::size_t> indices;
-  Groups(groups).draw(stream_of(stream, number), indices);
-  return indices;
-}
-
-std::size_t resampled_units(std::span<const std::size_t> groups) { return Groups(groups).count(); }
 
 std::size_t fewest_units(double confidence, double q) {
-  if (!is_confidence(confidence)) {
+  if (!is_confidence(confidence) || !(q > 0 && q < 1)) {
     return 0;
   }
   std::size_t units = 1;
-  while (1 - std::pow(q, double(units)) - std::pow(1 - q, double(units)) < confidence) {
+  while (std::pow(std::max(q, 1 - q), double(units)) > (1 - confidence) / 2) {
     ++units;
   }
   return units;
 }
 
-std::optional<Interval> bootstrap_interval(std::span<const double> sample,
-                                           std::span<const std::size_t> groups,
-                                           const Statistic& statistic, const RandomStream& stream,
-                                           double confidence, std::size_t resamples) {
-  const Groups grouped(groups);
-  if (!is_confidence(confidence) || groups.size() != sample.size() ||
-      grouped.count() < fewest_units(confidence)) {
+std::optional<Interval> quantile_interval(std::span<const double> sample, double q, double units,
+                                          double confidence) {
+  if (sample.empty() || has_nan(sample) || !(units >= double(fewest_units(confidence, q))) ||
+      fewest_units(confidence, q) == 0) {
     return std::nullopt;
   }
-  std::vector<double> estimates;
-  std::vector<double> drawn;
-  std::vector<std::size_t> indices;
-  for (std::size_t number = 0; number < resamples; ++number) {
-    grouped.draw(stream_of(stream, number), indices);
-    estimates.push_back(of_resample(sample, indices, statistic, drawn));
+  // The order statistic of rank r among n lies below the quantile with the probability that a
+  // beta variable of r and n + 1 - r does below q; it falls with r.
+  const auto rank_with = [&](double probability) {
+    return boundary(1, units, [&](double rank) {
+      return beta_probability(rank, units + 1 - rank, q) >= probability;
+    });
+  };
+  std::vector<double> sorted(sample.begin(), sample.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto value_with = [&](double probability) {
+    return at_rank(sorted, (rank_with(probability) - 0.5) * double(sorted.size()) / units + 0.5);
+  };
+  return Interval{value_with((1 + confidence) / 2), value_with((1 - confidence) / 2)};
+}
+
+std::optional<Interval> mean_interval(double estimate, std::span<const double> deviations,
+                                      double confidence) {
+  const double n = double(deviations.size());
+  double squares = 0;
+  double cubes = 0;
+  for (const double each : deviations) {
+    squares += each * each;
+    cubes += each * each * each;
   }
-  return percentiles(std::move(estimates), confidence);
+  if (deviations.size() < std::max<std::size_t>(2, fewest_units(confidence)) || !(squares > 0) ||
+      !is_confidence(confidence) || !std::isfinite(squares) || !std::isfinite(estimate)) {
+    return std::nullopt;
+  }
+  const double error = std::sqrt(squares / (n - 1) / n);
+  const double skewness = cubes / n / std::pow(squares / n, 1.5);
+  const double t = student_quantile((1 + confidence) / 2, int(deviations.size()) - 1);
+  // The inverse of Hall's cubic, which takes the skewness out of the studentized mean.
+  const auto untransformed = [&](double u) {
+    const double a = skewness / 3;
+    return std::abs(a) < 1e-9
+               ? u
+               : std::sqrt(n) / a * (std::cbrt(1 + 3 * a * (u / std::sqrt(n) - a / (2 * n))) - 1);
+  };
+  return Interval{estimate - error * untransformed(t), estimate - error * untransformed(-t)};
 }
 }  // namespace altiplan::study

@@ -66,7 +66,8 @@ double mean(std::span<const double> sample) {
   return std::accumulate(sample.begin(), sample.end(), 0.0) / double(sample.size());
 }
 
-double quantile_in_place(std::span<double> sample, double q) {
+double quantile(std::span<const double> values, double q) {
+  std::vector<double> sample(values.begin(), values.end());
   if (sample.empty() || !(q >= 0 && q <= 1) || has_nan(sample)) {
     return kNone;
   }
@@ -78,11 +79,6 @@ double quantile_in_place(std::span<double> sample, double q) {
     return *at;
   }
   return between(*at, *std::min_element(at + 1, sample.end()), place - double(below));
-}
-
-double quantile(std::span<const double> sample, double q) {
-  std::vector<double> copy(sample.begin(), sample.end());
-  return quantile_in_place(copy, q);
 }
 
 double median(std::span<const double> sample) { return quantile(sample, 0.5); }

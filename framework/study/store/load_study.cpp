@@ -11,6 +11,7 @@
 #include "altiplan/error.hpp"
 #include "host/config/yaml.hpp"
 #include "study/statistics/statistics.hpp"
+#include "study/store/claim_history.hpp"
 
 namespace altiplan::study {
 namespace {
@@ -84,6 +85,12 @@ StudyData load_study_data(const std::vector<std::string>& stores) {
     } else if (study["text"] != text) {
       throw Error("'" + name + "' belongs to another study than '" + stores.front() +
                   "': their study files differ");
+    }
+    for (const auto& [id, statement] : claim_statements(store)) {
+      ClaimStatement& latest = data.statements.try_emplace(id, statement).first->second;
+      if (latest.runs < statement.runs) {
+        latest = statement;
+      }
     }
     gather(data.scenarios, store.scenarios());
     gather(data.pipelines, store.pipelines());
