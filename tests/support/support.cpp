@@ -124,10 +124,9 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
   return entry("environment", name).environment(&value, site);
 }
 
-std::unique_ptr<Task> make_task(std::string_view name, std::string_view yaml) {
-  static const World kEmpty;
+std::unique_ptr<Task> make_task(std::string_view name, std::string_view yaml, const World& before) {
   Site site;
-  site.before = &kEmpty;
+  site.before = &before;
   const Value value = parameters(yaml);
   return entry("task", name).task(&value, site);
 }

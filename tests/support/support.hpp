@@ -35,7 +35,8 @@ std::unique_ptr<Objective> make_objective(std::string_view name, std::string_vie
 /// One that looks at the layers of a world.
 std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
                                           const World& before);
-std::unique_ptr<Task> make_task(std::string_view name, std::string_view yaml = "{}");
+std::unique_ptr<Task> make_task(std::string_view name, std::string_view yaml = "{}",
+                                const World& before = {});
 /// Problems of the parameters, as the user would read them, one a line; "" where there are none.
 std::string parameter_problems(std::string_view kind, std::string_view name, std::string_view yaml);
 

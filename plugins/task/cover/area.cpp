@@ -27,18 +27,22 @@ bool ring_contains(const Ring2& ring, const Point2& p) {
   return inside;
 }
 
-double edge_distance(const Point2& p, const Point2& a, const Point2& b) {
-  const Point2 way = b - a;
-  const double t = std::clamp((p - a).dot(way) / std::max(way.squaredNorm(), 1e-30), 0.0, 1.0);
-  return (a + t * way - p).norm();
+Point2 nearest_of(const Ring2& ring, const Point2& p) {
+  Point2 nearest = ring[0];
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const Point2 way = ring[i] - ring[j];
+    const double t =
+        std::clamp((p - ring[j]).dot(way) / std::max(way.squaredNorm(), 1e-30), 0.0, 1.0);
+    const Point2 there = ring[j] + t * way;
+    if ((there - p).squaredNorm() < (nearest - p).squaredNorm()) {
+      nearest = there;
+    }
+  }
+  return nearest;
 }
 
 double ring_distance(const Ring2& ring, const Point2& p) {
-  double least = 1e300;
-  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-    least = std::min(least, edge_distance(p, ring[j], ring[i]));
-  }
-  return least;
+  return (nearest_of(ring, p) - p).norm();
 }
 
 /// True if the leg is on the forbidden side of the ring somewhere by more than kTouch: inside, or
@@ -148,6 +152,12 @@ bool Area::contains(const Point2& p) const {
   }
   return true;
 }
+
+bool Area::is_outside(const Point2& p) const {
+  return !ring_contains(rings_[0], p) && ring_distance(rings_[0], p) > kTouch;
+}
+
+Point2 Area::nearest(const Point2& p) const { return nearest_of(rings_[0], p); }
 
 bool Area::sees(const Point2& a, const Point2& b) const {
   const Point2 low = a.cwiseMin(b);

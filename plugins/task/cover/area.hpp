@@ -22,6 +22,10 @@ class Area {
   const Point2& min() const { return boxes_[0].first; }
   const Point2& max() const { return boxes_[0].second; }
   bool contains(const Point2& p) const;
+  /// True if it lies beyond the outline, not touching it.
+  bool is_outside(const Point2& p) const;
+  /// The nearest point of the outline.
+  Point2 nearest(const Point2& p) const;
   /// True if the leg a–b stays inside, to 1e-7 m; it may touch.
   bool sees(const Point2& a, const Point2& b) const;
   /// The parts of the line y = `y` inside, from west to east.

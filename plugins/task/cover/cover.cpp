@@ -5,9 +5,12 @@
 #include "altiplan/flown_route.hpp"
 #include "altiplan/formats/polygon.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
+#include "altiplan/kit/over_ground.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/request.hpp"
 #include "altiplan/task.hpp"
+#include "altiplan/world.hpp"
+#include "clearance.hpp"
 #include "flights.hpp"
 
 namespace altiplan::cover {
@@ -20,6 +23,9 @@ struct Params {
   bool closed = true;
   std::optional<double> capacity_s;
   double height_m = 0;
+  std::optional<double> above_ground_m;
+  double tolerance_m = 2;
+  double clearance_m = 0;
   int attempts = 3;
 
   void describe(Fields& f) {
@@ -38,6 +44,18 @@ struct Params {
     f("height_m", height_m)
         .unit("m")
         .doc("height of the passes above sea level; with level_flight_at_m that");
+    f("above_ground_m", above_ground_m)
+        .unit("m")
+        .greater_than(0)
+        .doc("height of the passes and joins above the ground instead");
+    f("tolerance_m", tolerance_m)
+        .unit("m")
+        .greater_than(0)
+        .doc("with above_ground_m: how far the height may be off it");
+    f("clearance_m", clearance_m)
+        .unit("m")
+        .at_least(0)
+        .doc("distance of the tour from islands, within which nothing is covered either");
     f("attempts", attempts).range(1, 1000).doc("patterns of lines that are tried");
   }
 };
@@ -57,6 +75,9 @@ class Cover final : public Task {
  public:
   Cover(const Params& params, const Site& site)
       : params_(params), area_(area_of(params)), height_m_(params.height_m) {
+    if (params.above_ground_m) {
+      world_ = *site.before;
+    }
     const double level = site.volume.min.z();
     if (std::isfinite(level) && level == site.volume.max.z()) {
       height_m_ = level;
@@ -70,16 +91,33 @@ class Cover final : public Task {
       const bool is_outline = !formats::polygon_problem({params.outline_m, {}}).empty();
       throw ParameterError(is_outline ? "outline_m" : "holes_m", "the area: " + problem);
     }
+    formats::Polygon area{params.outline_m, params.holes_m};
+    if (params.clearance_m > 0 && !area.holes.empty()) {
+      const std::vector<formats::Polygon> parts = clear_of_islands(area, params.clearance_m);
+      if (parts.size() != 1) {
+        throw ParameterError(
+            "clearance_m", parts.empty()
+                               ? "the islands leave nothing to cover"
+                               : "the islands and their clearance cut the area into " +
+                                     std::to_string(parts.size()) + " parts: cover each by itself");
+      }
+      area = parts.front();
+    }
     std::vector<Ring2> islands;
-    for (const formats::Ring& hole : params.holes_m) {
+    for (const formats::Ring& hole : area.holes) {
       islands.push_back(points_of(hole));
     }
-    return {points_of(params.outline_m), std::move(islands)};
+    return {points_of(area.outline), std::move(islands)};
   }
 
   Box do_bounds() const override {
-    return {{area_.min().x(), area_.min().y(), height_m_},
-            {area_.max().x(), area_.max().y(), height_m_}};
+    double low = height_m_;
+    double high = height_m_;
+    if (params_.above_ground_m) {  // over any ground of the Earth
+      low = -1000;
+      high = 10'000 + *params_.above_ground_m;
+    }
+    return {{area_.min().x(), area_.min().y(), low}, {area_.max().x(), area_.max().y(), high}};
   }
 
   std::shared_ptr<const Environment> do_obstacles() const override {
@@ -107,17 +145,22 @@ class Cover final : public Task {
                     {},
                     {},
                     kUncovered};
+    // Of an end beside the area the order knows where it enters.
+    const auto within = [&](const Vec3& end) {
+      const Point2 p = flat(end);
+      return area_.is_outside(p) ? area_.nearest(p) : p;
+    };
     if (ends.start) {
-      problem.start = flat(*ends.start);
+      problem.start = within(*ends.start);
     }
     if (ends.goal) {
-      problem.goal = flat(*ends.goal);
+      problem.goal = within(*ends.goal);
       problem.closed = false;
     }
     for (const auto& end : {problem.start, problem.goal}) {
       if (end && !area_.sees(*end, *end)) {
         order.status = PlanStatus::invalid_problem;
-        order.message = "the start and the goal must lie in the area, outside its islands";
+        order.message = "the start and the goal must lie outside the islands of the area";
         return order;
       }
     }
@@ -134,6 +177,39 @@ class Cover final : public Task {
     }
     fill(order, problem, found, request, ends);
     return order;
+  }
+
+  /// Brings a line to its height, unless it has that: over the ground. Its ends may be none of its
+  /// own.
+  Polyline at_height(const Polyline& line) const {
+    return params_.above_ground_m
+               ? kit::over_ground(line, world_, *params_.above_ground_m, params_.tolerance_m)
+               : line;
+  }
+
+  /// Passes and joins over the ground; returns the waypoints.
+  Polyline raise(TaskOrder& order, const TaskEnds& ends) const {
+    Polyline flown;
+    const auto join = [&](Polyline& between, const Vec3& to) {
+      if (flown.empty()) {
+        flown.push_back(ends.start.value_or(to));
+      }
+      Polyline line{flown.back()};
+      line.insert(line.end(), between.begin(), between.end());
+      line.push_back(to);
+      line = at_height(line);
+      between.assign(line.begin() + 1, line.end() - 1);
+      flown.insert(flown.end(), between.begin(), between.end());
+    };
+    for (Pass& pass : order.passes) {
+      pass.points = at_height(pass.points);
+      join(pass.join, pass.points.front());
+      flown.insert(flown.end(), pass.points.begin(), pass.points.end());
+    }
+    const Vec3 end = order.last(ends);
+    join(order.last_join, end);
+    flown.push_back(end);
+    return without_repeats(flown);
   }
 
   /// The tour as one flight, from a pass on if it may begin anywhere.
@@ -159,9 +235,8 @@ class Cover final : public Task {
     return flight;
   }
 
-  /// Adds a flight's passes, the legs that cover what no other does; the others join them. Returns
-  /// its waypoints.
-  Polyline add(Flight flight, const TaskEnds& ends, TaskOrder& order) const {
+  /// Adds a flight's passes, the legs that cover what no other does; the others join them.
+  void add(Flight flight, const TaskEnds& ends, TaskOrder& order) const {
     Polyline flown;
     for (const Point2& p : flight.points) {
       flown.emplace_back(p.x(), p.y(), height_m_);
@@ -188,7 +263,6 @@ class Cover final : public Task {
         order.passes.push_back({{flown[i], flown[i + 1]}, std::exchange(order.last_join, {})});
       }
     }
-    return flown;
   }
 
   void fill(TaskOrder& order, const Problem& problem, const Sweep& found, const Request& request,
@@ -202,27 +276,30 @@ class Cover final : public Task {
         return;
       }
     }
-    Polyline flown;
     for (const Flight& flight : flights) {
       if (flights.size() > 1) {  // all begin where the first does
         const Vec3 home =
             ends.start.value_or(Vec3(flight.points[0].x(), flight.points[0].y(), height_m_));
         order.passes.push_back({{home}, std::exchange(order.last_join, {}), true});
       }
-      const Polyline part = add(flight, ends, order);
-      flown.insert(flown.end(), part.begin(), part.end());
+      add(flight, ends, order);
     }
     order.status = PlanStatus::solved;
     order.closes = params_.closed;
-    order.time_s = flown_time(Route(without_repeats(flown)), request);
-    // Of other speeds than the vehicle's own nothing is known.
-    const bool is_bounded = request.wind.is_calm() && request.vehicle.speed_near.empty();
+    order.time_s = flown_time(Route(raise(order, ends)), request);
+    // Of other speeds than the vehicle's own nothing is known, nor of ends beside the area.
+    const auto is_beside = [&](const std::optional<Vec3>& end) {
+      return end && area_.is_outside({end->x(), end->y()});
+    };
+    const bool is_bounded = request.wind.is_calm() && request.vehicle.speed_near.empty() &&
+                            !is_beside(ends.start) && !is_beside(ends.goal);
     order.bound_s = is_bounded ? std::min(found.bound_s, order.time_s) : 0;
   }
 
   Params params_;
   Area area_;
   double height_m_;
+  World world_;  ///< with above_ground_m
 };
 }  // namespace
 }  // namespace altiplan::cover

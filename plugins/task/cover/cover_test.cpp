@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "altiplan/environment.hpp"
 #include "altiplan/flown_route.hpp"
+#include "altiplan/world.hpp"
+#include "support/posts.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::cover_task_test {
@@ -88,8 +91,12 @@ TEST(Cover, BeginsAndEndsWhereItIsAsked) {
   EXPECT_EQ(waypoints(over, across).front(), Vec3(0, 0, 0));
   EXPECT_EQ(waypoints(over, across).back(), Vec3(100, 100, 0));
   EXPECT_GE(covered(over, task->obstacles().get()), 0.9997);
-  const TaskEnds outside{Vec3(-50, 0, 0), {}};
-  EXPECT_EQ(task->order(copter(), outside).status, PlanStatus::invalid_problem);
+  const TaskEnds beside{Vec3(-50, 20, 0), {}};
+  const TaskOrder from_beside = task->order(copter(), beside);
+  EXPECT_EQ(waypoints(from_beside, beside)[1], Vec3(0, 20, 0));  // where it enters the area
+  EXPECT_EQ(waypoints(from_beside, beside).back(), Vec3(-50, 20, 0));
+  const TaskEnds within{Vec3(40, 40, 0), {}};
+  EXPECT_EQ(task->order(copter(), within).status, PlanStatus::invalid_problem);
   const auto open = testing::make_task("cover", "{closed: false, " + std::string(kIslands) + "}");
   EXPECT_LT(open->order(copter(), {}).time_s, around.time_s);
 }
@@ -130,6 +137,60 @@ TEST(Cover, EndsWithItsBudget) {
   EXPECT_EQ(first.status, PlanStatus::solved);
   EXPECT_TRUE(first.budget_hit);
   EXPECT_LE(task->order(copter(), {}).time_s, first.time_s);
+}
+
+/// Ground of ridges and hollows, 20 m between posts.
+World hills() {
+  constexpr int kPosts = 9;
+  std::vector<float> heights;
+  for (int j = 0; j < kPosts; ++j) {
+    for (int i = 0; i < kPosts; ++i) {
+      heights.push_back(float(200 + 15 * std::sin(1.3 * i) * std::cos(0.9 * j)));
+    }
+  }
+  return testing::world_of(std::make_shared<testing::Posts>(
+      HeightField({-30, -30}, {20, 20}, kPosts, kPosts, std::move(heights))));
+}
+
+TEST(Cover, FollowsTheGroundWithinTheTolerance) {
+  const World world = hills();
+  const auto task = testing::make_task(
+      "cover",
+      "{above_ground_m: 60, tolerance_m: 1.5, spacing_m: 12, " + std::string(kIslands) + "}",
+      world);
+  const TaskOrder order = task->order(copter(), {});
+  ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+  const Polyline route = waypoints(order, {});
+  std::size_t level = 0;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    EXPECT_GE(world.ground_gap(route[i - 1], route[i]), 58.5 - 1e-6) << i;
+    EXPECT_LE(world.ground_gap_max(route[i - 1], route[i]), 61.5 + 1e-6) << i;
+    level += route[i - 1].z() == route[i].z();
+  }
+  EXPECT_LT(level, route.size() / 2);
+  EXPECT_NEAR(order.time_s, flown_time(route, copter()), 1e-6);
+  EXPECT_LE(order.bound_s, order.time_s);
+  // Beyond the model there is no ground.
+  const auto wide = testing::make_task(
+      "cover", "{above_ground_m: 60, outline_m: [[0, 0], [300, 0], [300, 100]]}", world);
+  EXPECT_THROW(static_cast<void>(wide->order(copter(), {})), Error);
+}
+
+TEST(Cover, KeepsClearOfIslands) {
+  const auto task = testing::make_task("cover", "{clearance_m: 2, " + std::string(kIslands) + "}");
+  const TaskOrder order = task->order(copter(), {});
+  ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+  const auto islands = task->obstacles();
+  const Polyline route = waypoints(order, {});
+  double nearest = kInfinity;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    EXPECT_FALSE(islands->blocked(route[i - 1], route[i], 2 - 1e-6)) << i;
+    nearest = std::min(nearest, islands->clearance(route[i]));
+  }
+  EXPECT_LT(nearest, 2.1);
+  EXPECT_THROW(testing::make_task(
+                   "cover", "{clearance_m: 5, holes_m: [[[2, 40], [98, 40], [98, 60], [2, 60]]]}"),
+               Error);
 }
 
 TEST(Cover, RefusesAreasThatAreNone) {

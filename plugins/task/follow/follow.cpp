@@ -6,6 +6,7 @@
 #include "altiplan/environment.hpp"
 #include "altiplan/error.hpp"
 #include "altiplan/flown_route.hpp"
+#include "altiplan/kit/over_ground.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/request.hpp"
 #include "altiplan/task.hpp"
@@ -109,50 +110,11 @@ class Follow final : public Task {
     return pass;
   }
 
-  Vec3 over(Vec3 p, const World& world) const {
-    const std::optional<double> ground = world.ground(p.x(), p.y());
-    if (!ground) {
-      throw ParameterError("above_ground_m", "there is no ground below (" + std::to_string(p.x()) +
-                                                 ", " + std::to_string(p.y()) + ")");
-    }
-    p.z() = *ground + *params_.above_ground_m;
-    return p;
-  }
-
-  /// Waypoints where a straight leg would be off the height by more than the tolerance, at steps of
-  /// a tenth of the height.
   Polyline over_ground(const Polyline& pass, const World& world) const {
-    const double step = std::max(1.0, *params_.above_ground_m / 10);
-    Polyline fine{over(pass[0], world)};
-    for (std::size_t i = 1; i < pass.size(); ++i) {
-      const int parts = std::max(1, int(std::ceil((pass[i] - pass[i - 1]).norm() / step)));
-      Polyline samples;
-      for (int k = 0; k <= parts; ++k) {
-        samples.push_back(over(pass[i - 1] + double(k) / parts * (pass[i] - pass[i - 1]), world));
-      }
-      add_needed(samples, 0, samples.size() - 1, fine);
-    }
-    return fine;
-  }
-
-  /// Douglas and Peucker, by height.
-  void add_needed(const Polyline& samples, std::size_t first, std::size_t last,
-                  Polyline& kept) const {
-    std::size_t worst = first;
-    double off = 0;
-    for (std::size_t k = first + 1; k < last; ++k) {
-      const double t = double(k - first) / double(last - first);
-      const double z = samples[first].z() + t * (samples[last].z() - samples[first].z());
-      if (std::abs(samples[k].z() - z) > off) {
-        off = std::abs(samples[k].z() - z);
-        worst = k;
-      }
-    }
-    if (off > params_.tolerance_m) {
-      add_needed(samples, first, worst, kept);
-      add_needed(samples, worst, last, kept);
-    } else {
-      kept.push_back(samples[last]);
+    try {
+      return kit::over_ground(pass, world, *params_.above_ground_m, params_.tolerance_m);
+    } catch (const Error& error) {
+      throw ParameterError("above_ground_m", error.what());
     }
   }
 
