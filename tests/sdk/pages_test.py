@@ -35,7 +35,7 @@ NOT_RUN = {
 COMMAND = re.compile(r"^(?:\$ )?((?:altiplan(?:-\w[\w-]*)?|tools/[\w/.]+|build/[\w/]+|~/[\w/-]+|cmake|"
                      r"ctest|cd|export|gdb)(?: .*|$))", re.M)
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
-SAVED = re.compile(r"`(\w+\.yaml)`[^`\n]*:\n\n```yaml\n(.*?)^```$", re.M | re.S)
+SAVED = re.compile(r"`(\w+\.(?:yaml|geojson))`[^`\n]*:\n\n```(?:yaml|json)\n(.*?)^```$", re.M | re.S)
 
 
 def commands(text):

@@ -39,6 +39,7 @@ int run_program(int argc, char** argv, const std::function<void(App&, Action&)>&
 // Each adds its subcommand, which sets the action when it is called.
 void add_run(App& app, Action& action);
 void add_go(App& app, Action& action);
+void add_survey(App& app, Action& action);
 void add_info(App& app, Action& action);
 void add_validate(App& app, Action& action);
 void add_set(App& app, Action& action);

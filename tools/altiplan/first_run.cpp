@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "first_run.hpp"
 
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
 #include "altiplan/drawing.hpp"
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
@@ -8,6 +12,7 @@
 #include "host/base/words.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
+#include "progress.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -83,7 +88,147 @@ std::vector<std::string> ends_in_zones(const host::Mission& mission) {
   add("the goal", mission.request.goal.position);
   return sentences;
 }
+/// Numbers separated by commas; none if the text is anything else.
+std::optional<std::vector<double>> numbers(const std::string& text) {
+  std::vector<double> all;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) {
+      return std::nullopt;
+    }
+    all.push_back(value);
+    if (stop == end) {
+      return all;
+    }
+    if (*stop != ',') {
+      return std::nullopt;
+    }
+    at = stop + 1;
+  }
+}
+
 }  // namespace
+
+void add_terrain(App& command, FirstArguments& arguments) {
+  command
+      .add_option("--terrain DEM", arguments.terrain,
+                  "elevation models, or a folder of tiles; repeatable")
+      ->required()
+      ->take_all();
+}
+
+void add_first_options(App& command, FirstArguments& arguments, const std::string& folder) {
+  host::RouteWish& wish = arguments.wish;
+  command
+      .add_option("--avoid FILE", arguments.avoid,
+                  "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
+      ->take_all();
+  const auto metres = [&](const char* name, std::optional<double>& value, const char* what) {
+    return command.add_option(std::string(name) + " METRES", value, what)
+        ->check(number_from(0, 1e4));
+  };
+  metres("--min-agl", wish.min_above_ground_m, "minimum height above ground (default 50)");
+  metres("--max-agl", wish.max_above_ground_m, "greatest height above ground (default none)");
+  auto* battery =
+      command
+          .add_option("--battery WH", wish.battery_wh,
+                      "capacity of the battery, with --power; routes may use it but for "
+                      "its reserve")
+          ->check(number_from(0.01, 1e6));
+  auto* power =
+      command.add_option("--power W", wish.power_w, "mean power in flight, with --battery")
+          ->check(number_from(0.01, 1e6))
+          ->needs(battery);
+  battery->needs(power);
+  command.add_option("--reserve SHARE", wish.reserve, "share of the battery to keep (default 0.2)")
+      ->check(number_from(0, 0.99))
+      ->needs(battery);
+  command.add_option("--planner NAME", wish.planner, "planner (default: chosen)");
+  command.add_option("--start-time TIME", wish.start_time,
+                     "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count");
+  command.add_option("--crs EPSG:CODE", wish.crs, "coordinate system of a model that names none");
+  command.add_option("-o,--out DIR", arguments.out, "new folder (default: " + folder + ")");
+}
+
+host::RouteWish wish_of_first(const FirstArguments& arguments) {
+  host::RouteWish wish = arguments.wish;
+  wish.terrain.assign(arguments.terrain.begin(), arguments.terrain.end());
+  wish.avoid.assign(arguments.avoid.begin(), arguments.avoid.end());
+  return wish;
+}
+
+std::string point_problem(const std::string& text) {
+  const auto point = numbers(text);
+  return point && (point->size() == 2 || point->size() == 3)
+             ? ""
+             : "expected LON,LAT or LON,LAT,AGL (degrees; metres above ground), without spaces, "
+               "found '" +
+                   text + "'";
+}
+
+host::WishedPoint point_of(const char* option, const std::string& text) {
+  const std::vector<double> all = numbers(text).value();
+  return {option, all[0], all[1], all.size() > 2 ? std::optional(all[2]) : std::nullopt};
+}
+
+fs::path new_folder(const FirstArguments& arguments, const fs::path& after) {
+  const std::string stem = after.stem().string();
+  fs::path folder = arguments.out.value_or(stem);
+  for (int n = 2; !arguments.out && fs::exists(folder); ++n) {
+    folder = stem + "_" + std::to_string(n);
+  }
+  return folder;
+}
+
+std::unique_ptr<host::Unfinished> created(const fs::path& folder) {
+  const auto lock = host::uninterrupted();
+  std::error_code error;
+  if (!fs::create_directory(folder, error)) {
+    throw Error("-o: '" + folder.string() + "' " +
+                (error ? "cannot be created: " + error.message()
+                       : "exists already: give the name of a new folder"));
+  }
+  return std::make_unique<host::Unfinished>([folder] {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  });
+}
+
+void print_zones(const host::RunResult& result, const std::vector<std::string>& layers) {
+  for (const std::string& layer : layers) {
+    std::string text;
+    for (const std::string& note : result.notes) {
+      const bool is_count = note.find("keep-in zones, ") != note.npos ||
+                            note.find("zones outside the bounds") != note.npos;
+      if (is_count && note.rfind(layer + ": ", 0) == 0) {
+        text += (text.empty() ? "" : "; ") + note.substr(layer.size() + 2);
+      }
+    }
+    std::printf("zones: %s: %s\n", layer.c_str(), text.c_str());
+  }
+}
+
+host::PlanReport judged(const std::string& file, const host::FirstRoute& first,
+                        const host::Overrides& overrides, const host::GateOptions& options) {
+  host::Config config =
+      host::load_scenario_text(first.flown_scenario(), "the world of go", overrides);
+  config.is_only_judged = true;
+  return busy("judging the mission", [&] {
+    return host::judge_plan(file, formats::read_mission(file), host::build_mission(config, 1),
+                            options);
+  });
+}
+
+void print_check(const host::PlanReport& report) {
+  std::printf("check: %s, flown by %s, %s\n", word_of(report.verdict()),
+              report.autopilots.front().name().c_str(), time_in_words(report.time).c_str());
+  for (const host::Finding& finding : report.findings) {
+    std::printf("  %s: %s\n", finding.items.back().c_str(), finding.violation.message.c_str());
+  }
+}
 
 host::RunResult run_in(const fs::path& folder, const host::FirstFiles& files,
                        const host::Overrides& overrides, Interrupt& interrupt) {

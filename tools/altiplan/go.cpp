@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 
 #include "commands.hpp"
 #include "first_run.hpp"
 #include "flight_text.hpp"
 #include "host/base/output_file.hpp"
-#include "host/base/unfinished.hpp"
 #include "host/first_route/first_route.hpp"
 #include "host/gate/fewest_items.hpp"
-#include "host/gate/plan_report.hpp"
-#include "host/mission/mission.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
 #include "progress.hpp"
@@ -23,58 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct GoArguments {
-  std::vector<std::string> terrain;
+struct GoArguments : FirstArguments {
   std::string from;
   std::string to;
   std::vector<std::string> via;
-  std::vector<std::string> avoid;
   bool copter = false;
-  std::optional<std::string> out;
-  host::RouteWish wish;
-  host::Overrides overrides;
 };
 
-/// Numbers separated by commas; none if the text is anything else.
-std::optional<std::vector<double>> numbers(const std::string& text) {
-  std::vector<double> all;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value)) {
-      return std::nullopt;
-    }
-    all.push_back(value);
-    if (stop == end) {
-      return all;
-    }
-    if (*stop != ',') {
-      return std::nullopt;
-    }
-    at = stop + 1;
-  }
-}
-
-std::string point_problem(const std::string& text) {
-  const auto point = numbers(text);
-  return point && (point->size() == 2 || point->size() == 3)
-             ? ""
-             : "expected LON,LAT or LON,LAT,AGL (degrees; metres above ground), without spaces, "
-               "found '" +
-                   text + "'";
-}
-
-host::WishedPoint point_of(const char* option, const std::string& text) {
-  const std::vector<double> all = numbers(text).value();
-  return {option, all[0], all[1], all.size() > 2 ? std::optional(all[2]) : std::nullopt};
-}
-
 host::RouteWish wish_of(const GoArguments& arguments) {
-  host::RouteWish wish = arguments.wish;
-  wish.terrain.assign(arguments.terrain.begin(), arguments.terrain.end());
-  wish.avoid.assign(arguments.avoid.begin(), arguments.avoid.end());
+  host::RouteWish wish = wish_of_first(arguments);
   wish.points.push_back(point_of("--from", arguments.from));
   for (const std::string& via : arguments.via) {
     wish.points.push_back(point_of("--via", via));
@@ -83,51 +35,10 @@ host::RouteWish wish_of(const GoArguments& arguments) {
   return wish;
 }
 
-/// The folder asked for, or one named after the model, numbered if there are others.
-fs::path folder_of(const GoArguments& arguments) {
-  const fs::path model = fs::path(arguments.terrain.front()).lexically_normal();
-  const std::string stem = (model.has_filename() ? model : model.parent_path()).stem().string();
-  fs::path folder = arguments.out.value_or(stem);
-  for (int n = 2; !arguments.out && fs::exists(folder); ++n) {
-    folder = stem + "_" + std::to_string(n);
-  }
-  return folder;
-}
-
-/// Creates the folder, to be removed again unless it is finished.
-std::unique_ptr<host::Unfinished> created(const fs::path& folder) {
-  const auto lock = host::uninterrupted();
-  std::error_code error;
-  if (!fs::create_directory(folder, error)) {
-    throw Error("-o: '" + folder.string() + "' " +
-                (error ? "cannot be created: " + error.message()
-                       : "exists already: give the name of a new folder"));
-  }
-  return std::make_unique<host::Unfinished>([folder] {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-  });
-}
-
 /// True where another corridor or smaller cells may help.
 bool may_be_wider(const host::RunResult& result) {
   return !result.accepted && (result.status == host::RunStatus::no_route ||
                               result.status == host::RunStatus::timed_out);
-}
-
-/// How many zones of each file count, as its layer says.
-void print_zones(const host::RunResult& result, const std::vector<std::string>& layers) {
-  for (const std::string& layer : layers) {
-    std::string text;
-    for (const std::string& note : result.notes) {
-      const bool is_count = note.find("keep-in zones, ") != note.npos ||
-                            note.find("zones outside the bounds") != note.npos;
-      if (is_count && note.rfind(layer + ": ", 0) == 0) {
-        text += (text.empty() ? "" : "; ") + note.substr(layer.size() + 2);
-      }
-    }
-    std::printf("zones: %s: %s\n", layer.c_str(), text.c_str());
-  }
 }
 
 void print(const host::RunResult& result) {
@@ -142,23 +53,6 @@ void print(const host::RunResult& result) {
       "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s%s\n",
       fixed(m.length_m / 1000, 3).c_str(), m.waypoints, fixed(m.min_ground_clearance_m, 1).c_str(),
       duration(seconds).c_str(), flown.empty() ? "" : ("; flown in " + flown).c_str());
-}
-
-/// True if the mission passes as autopilots fly it; prints the verdict.
-bool passes(const std::string& file, const host::FirstRoute& first,
-            const host::Overrides& overrides) {
-  host::Config config =
-      host::load_scenario_text(first.flown_scenario(), "the world of go", overrides);
-  config.is_only_judged = true;
-  const host::PlanReport report = busy("judging the mission", [&] {
-    return host::judge_plan(file, formats::read_mission(file), host::build_mission(config, 1), {});
-  });
-  std::printf("check: %s, flown by %s, %s\n", word_of(report.verdict()),
-              report.autopilots.front().name().c_str(), time_in_words(report.time).c_str());
-  for (const host::Finding& finding : report.findings) {
-    std::printf("  %s: %s\n", finding.items.back().c_str(), finding.violation.message.c_str());
-  }
-  return report.passed();
 }
 
 /// The plan with fly-by items for turns, if that passes; else with all of their points.
@@ -204,7 +98,8 @@ int go(const GoArguments& arguments) {
   std::optional<Activity> activity("reading the model");
   const host::RouteWish wish = wish_of(arguments);
   const host::FirstRoute first(wish, arguments.overrides.plugin_path);
-  const fs::path folder = folder_of(arguments);
+  const fs::path model = fs::path(arguments.terrain.front()).lexically_normal();
+  const fs::path folder = new_folder(arguments, model.has_filename() ? model : model.parent_path());
   host::FirstFiles files = first.files(0, folder);  // nothing is written if that throws
   activity.reset();
   const std::unique_ptr<host::Unfinished> unfinished = created(folder);
@@ -251,15 +146,16 @@ int go(const GoArguments& arguments) {
   }
   const bool is_mission = write_views(folder, arguments);
   unfinished->is_finished();
-  return is_mission && passes(folder / "route.plan", first, arguments.overrides) ? kDone : kNoRoute;
+  if (!is_mission) {
+    return kNoRoute;
+  }
+  const host::PlanReport report = judged(folder / "route.plan", first, arguments.overrides, {});
+  print_check(report);
+  return report.passed() ? kDone : kNoRoute;
 }
 
 void add_points(App& command, GoArguments& arguments) {
-  command
-      .add_option("--terrain DEM", arguments.terrain,
-                  "elevation models, or a folder of tiles; repeatable")
-      ->required()
-      ->take_all();
+  add_terrain(command, arguments);
   command
       .add_option("--from LON,LAT[,AGL]", arguments.from, "start: degrees, and metres above ground")
       ->required()
@@ -275,41 +171,13 @@ void add_points(App& command, GoArguments& arguments) {
 
 void add_wishes(App& command, GoArguments& arguments) {
   host::RouteWish& wish = arguments.wish;
-  command
-      .add_option("--avoid FILE", arguments.avoid,
-                  "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
-      ->take_all();
-  const auto metres = [&](const char* name, std::optional<double>& value, const char* what) {
-    return command.add_option(std::string(name) + " METRES", value, what)
-        ->check(number_from(0, 1e4));
-  };
-  metres("--min-agl", wish.min_above_ground_m, "minimum height above ground (default 50)");
-  metres("--max-agl", wish.max_above_ground_m, "greatest height above ground (default none)");
   auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
   command
       .add_option("--wing RADIUS", wish.turn_radius_m,
                   "plan for an aeroplane with this turn radius")
       ->check(number_from(1, 5000))
       ->excludes(copter);
-  auto* battery =
-      command
-          .add_option("--battery WH", wish.battery_wh,
-                      "capacity of the battery, with --power; routes may use it but for "
-                      "its reserve")
-          ->check(number_from(0.01, 1e6));
-  auto* power =
-      command.add_option("--power W", wish.power_w, "mean power in flight, with --battery")
-          ->check(number_from(0.01, 1e6))
-          ->needs(battery);
-  battery->needs(power);
-  command.add_option("--reserve SHARE", wish.reserve, "share of the battery to keep (default 0.2)")
-      ->check(number_from(0, 0.99))
-      ->needs(battery);
-  command.add_option("--planner NAME", wish.planner, "planner (default: chosen)");
-  command.add_option("--start-time TIME", wish.start_time,
-                     "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count");
-  command.add_option("--crs EPSG:CODE", wish.crs, "coordinate system of a model that names none");
-  command.add_option("-o,--out DIR", arguments.out, "new folder (default: the model's name)");
+  add_first_options(command, arguments, "the model's name");
 }
 }  // namespace
 

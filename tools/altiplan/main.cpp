@@ -20,6 +20,7 @@ std::string command_line(int argc, char** argv) {
 int main(int argc, char** argv) {
   return run_program(argc, argv, [&](App& app, Action& action) {
     add_go(app, action);
+    add_survey(app, action);
     add_info(app, action);
     add_run(app, action);
     add_validate(app, action);

@@ -23,6 +23,7 @@ class Corridor {
   /// "frame: {origin_lonlat: [8.5, 46.5]}", or "" for the first model's own.
   const std::string& frame_line() const { return frame_line_; }
   std::string frame_in_words() const;
+  const Frame& frame() const { return frame_; }
   /// What of a route lies over voids of the models, which are read once more.
   struct Voids {
     double length_m = 0;

@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kCopterSpeed = 10;
+constexpr double kCopterRadius = 1;
 constexpr double kBank = 30;  // degrees
 constexpr double kGravity = 9.80665;
 
@@ -33,6 +34,53 @@ std::string text_of(double value) {
   return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
 }
 std::string whole(double value) { return with_digits(std::round(value), 9); }
+
+std::string in_metres(double value) { return with_digits(value, 5) + " m"; }
+
+/// Within a millimetre, which is what scenarios say.
+formats::Ring in_frame(const formats::Ring& lonlat, const Frame& frame) {
+  formats::Ring ring;
+  for (const auto& [lon, lat] : lonlat) {
+    const auto [x, y] = frame.to_local(lon, lat);
+    ring.push_back({std::round(x * 1000) / 1000, std::round(y * 1000) / 1000});
+  }
+  return formats::without_repeats(ring);
+}
+
+double ring_m2(const formats::Ring& ring) {
+  double twice = 0;
+  for (std::size_t i = 2; i < ring.size(); ++i) {
+    twice += formats::cross(ring[0], ring[i - 1], ring[i]);
+  }
+  return std::abs(twice) / 2;
+}
+
+std::string text_of(const formats::Ring& ring) {
+  std::string text;
+  for (const auto& [x, y] : ring) {
+    text += (text.empty() ? "[[" : ", [") + text_of(x) + ", " + text_of(y) + "]";
+  }
+  return text + "]";
+}
+
+/// The whole flight is at the height of the photos, within their tolerance.
+WishedHeights heights_of_photos(const RouteWish& wish, const SurveyLines& lines) {
+  WishedHeights heights;
+  heights.min_m = lines.above_ground_m - lines.off_m;
+  heights.max_m = lines.above_ground_m + lines.off_m;
+  heights.ends_m = lines.above_ground_m;
+  const std::string needed =
+      " m above ground that photos of " + with_digits(100 * wish.survey->gsd_m, 4) + " cm take";
+  if (wish.min_above_ground_m.value_or(0) > heights.min_m) {
+    throw Error("--min-agl: " + in_metres(*wish.min_above_ground_m) + " is above the " +
+                with_digits(heights.min_m, 4) + needed + ": raise --gsd-cm");
+  }
+  if (wish.max_above_ground_m.value_or(kInfinity) < *heights.max_m) {
+    throw Error("--max-agl: " + in_metres(*wish.max_above_ground_m) + " is below the " +
+                with_digits(*heights.max_m, 4) + needed + ": lower --gsd-cm");
+  }
+  return heights;
+}
 
 /// A file below the current folder is named from the new one, so that both can be moved together.
 std::string path_in(const fs::path& folder, const fs::path& file) {
@@ -57,10 +105,21 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
       throw Error(std::string("--avoid: ") + error.what());
     }
   }
+  if (wish_.survey) {
+    lines_ = lines_of(*wish_.survey);
+    heights_ = heights_of_photos(wish_, *lines_);
+    area_.outline = in_frame(wish_.survey->area.outline, corridor_.frame());
+    for (const formats::Ring& hole : wish_.survey->area.holes) {
+      area_.holes.push_back(in_frame(hole, corridor_.frame()));
+    }
+  }
 }
 
 /// As slow as turns of the radius allow at the bank, rounded up.
 double FirstRoute::speed_mps() const {
+  if (lines_) {  // the camera keeps up, rounded down
+    return std::min(kCopterSpeed, std::max(0.1, std::floor(lines_->max_mps * 10) / 10));
+  }
   if (!wish_.turn_radius_m) {
     return kCopterSpeed;
   }
@@ -106,7 +165,7 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
     text += terrain_entry(tile, path_in(folder, tile.file));
   }
   // Zones with hours count if they are active while the flight may last.
-  const double horizon = std::ceil(3 * corridor_.length_m() / speed_mps() + 600);
+  const double horizon = std::ceil(3 * length_m() / speed_mps() + 600);
   const std::vector<std::string> ids = zone_layers();
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const fs::path& file = wish_.avoid[i];
@@ -118,7 +177,7 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
 }
 
 std::string FirstRoute::vehicle() const {
-  const std::string energy = wish_.battery_wh && wish_.power_w
+  const std::string energy = wish_.battery_wh && wish_.power_w && !lines_
                                  ? ", energy: {capacity_wh: " + text_of(*wish_.battery_wh) +
                                        ", reserve: " + text_of(wish_.reserve) +
                                        ", power_w: " + text_of(*wish_.power_w) + "}"
@@ -126,7 +185,8 @@ std::string FirstRoute::vehicle() const {
   return (wish_.turn_radius_m
               ? "{radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
                     ", bank_deg: " + text_of(kBank) + "}"
-              : "{radius_m: 1, performance: arducopter, speed_mps: " + text_of(speed_mps())) +
+              : "{radius_m: " + text_of(kCopterRadius) +
+                    ", performance: arducopter, speed_mps: " + text_of(speed_mps())) +
          energy + "}";
 }
 
@@ -136,6 +196,10 @@ std::string FirstRoute::point(const WishedPoint& at) const {
 }
 
 double FirstRoute::flown_margin() const {
+  if (lines_) {
+    constexpr double kStored = 0.05;  // of what is drawn, numbers of files may be off
+    return lines_->off_m - lines_->drawn_off_m(*wish_.survey) - kStored;
+  }
   double margin = kFlownWithin;
   for (const WishedPoint& at : wish_.points) {
     const double height = at.above_ground_m.value_or(heights_.ends_m);
@@ -149,11 +213,26 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
   const auto corner = [](const Vec3& p) {
     return "[" + text_of(p.x()) + ", " + text_of(p.y()) + ", " + text_of(p.z()) + "]";
   };
-  std::string text = "# The world of a first route, written by altiplan go.\naltiplan: 1\nname: " +
-                     exact_json_text(wish_.terrain.front().stem().string()) + "\n" + environment +
-                     corridor_.frame_line() + (corridor_.frame_line().empty() ? "" : "\n");
+  std::string text =
+      std::string("# The world of ") +
+      (lines_ ? "a survey, written by altiplan survey" : "a first route, written by altiplan go") +
+      ".\naltiplan: 1\nname: " +
+      exact_json_text((lines_ ? wish_.survey->file : wish_.terrain.front()).stem()) + "\n" +
+      environment + corridor_.frame_line() + (corridor_.frame_line().empty() ? "" : "\n");
   text += "volume: {min_m: " + corner(volume.min) + ", max_m: " + corner(volume.max) + "}\n" +
-          "vehicle: " + vehicle() + "\nstart: " + point(wish_.points.front()) + "}\n";
+          "vehicle: " + vehicle() + "\n" + ends();
+  if (wish_.start_time) {
+    text += "start_time: " + exact_json_text(*wish_.start_time) + "\n";
+  }
+  return text;
+}
+
+std::string FirstRoute::ends() const {
+  const std::string start = "start: " + point(wish_.points.front()) + "}\n";
+  if (lines_) {
+    return (wish_.survey->has_start ? start : "") + survey_task();
+  }
+  std::string text = start;
   const char* reached = ", tolerance_m: 1}\n";  // files of missions round points
   if (wish_.points.size() > 2) {
     text += "via:\n";
@@ -161,11 +240,34 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
       text += "  - " + point(wish_.points[i]) + reached;
     }
   }
-  text += "goal: " + point(wish_.points.back()) + reached;
-  if (wish_.start_time) {
-    text += "start_time: " + exact_json_text(*wish_.start_time) + "\n";
+  return text + "goal: " + point(wish_.points.back()) + reached;
+}
+
+std::string FirstRoute::survey_task() const {
+  std::string text = "task:\n  cover:\n    outline_m: " + text_of(area_.outline) + "\n";
+  if (!area_.holes.empty()) {
+    text += "    holes_m:\n";
+    for (const formats::Ring& hole : area_.holes) {
+      text += "      - " + text_of(hole) + "\n";
+    }
+    text += "    clearance_m: " + text_of(kCopterRadius + kFlownWithin + 0.01) + "\n";
   }
-  return text;
+  const auto number = [](double value) { return text_of(std::round(value * 1e6) / 1e6); };
+  return text + "    spacing_m: " + number(lines_->spacing_m) +
+         "\n    above_ground_m: " + number(lines_->above_ground_m) +
+         "\n    tolerance_m: " + number(lines_->drawn_off_m(*wish_.survey)) + "\n";
+}
+
+double FirstRoute::area_m2() const {
+  double area = ring_m2(area_.outline);
+  for (const formats::Ring& hole : area_.holes) {
+    area -= ring_m2(hole);
+  }
+  return area;
+}
+
+double FirstRoute::length_m() const {
+  return corridor_.length_m() + (lines_ ? area_m2() / lines_->spacing_m : 0);
 }
 
 std::string FirstRoute::heights(double margin, const std::string& applies_to) const {
@@ -219,11 +321,21 @@ std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,
           "volume: " + with_digits(size.x(), 3) + " x " + with_digits(size.y(), 3) + " km, " +
               (corridor_.is_all(volume) ? "all of the model" : kWidth[kTry[attempt].width]) + ", " +
               whole(volume.min.z()) + " to " + whole(volume.max.z()) + " m above sea level",
-          "heights: at least " + text_of(heights_.min_m) + " m above ground" +
-              (heights_.is_min_lowered ? " (half of --max-agl)" : "") +
-              (heights_.max_m ? ", at most " + text_of(*heights_.max_m) + " m" : "") +
-              ", points without a height at " + text_of(heights_.ends_m) + " m; " + vehicle,
-          "planner: " + search.words};
+          heights_in_words() + "; " + vehicle, "planner: " + search.words};
+}
+
+std::string FirstRoute::heights_in_words() const {
+  if (lines_) {
+    const Camera& camera = wish_.survey->camera;
+    return "photos: " + camera.name + ", " + in_metres(lines_->above_ground_m) +
+           " above ground within " + in_metres(lines_->off_m) + ", each of " +
+           in_metres(lines_->across_m) + " x " + in_metres(lines_->along_m) + ", every " +
+           in_metres(lines_->trigger_m) + " on lines " + in_metres(lines_->spacing_m) + " apart";
+  }
+  return "heights: at least " + text_of(heights_.min_m) + " m above ground" +
+         (heights_.is_min_lowered ? " (half of --max-agl)" : "") +
+         (heights_.max_m ? ", at most " + text_of(*heights_.max_m) + " m" : "") +
+         ", points without a height at " + text_of(heights_.ends_m) + " m";
 }
 
 std::string FirstRoute::over_voids(const Polyline& route) const {
@@ -243,8 +355,11 @@ FirstFiles FirstRoute::files(int attempt, const fs::path& folder) const {
       wish_, heights_, {box, corridor_.length_m(), corridor_.spacing_m(), kTry[attempt].fineness},
       *registry_);
   return {scenario(box, folder),
-          "# The search of a first route, written by altiplan go.\naltiplan: 1\n"
-          "scenario: scenario.yaml\nsteps:\n" +
+          std::string("# The search of ") +
+              (lines_ ? "a survey, written by altiplan survey"
+                      : "a first route, written by altiplan go") +
+              ".\naltiplan: 1\n"
+              "scenario: scenario.yaml\nsteps:\n" +
               search.steps,
           choices(attempt, box, search), zone_layers()};
 }

@@ -34,6 +34,10 @@ class FirstRoute {
   /// The scenario in which the mission of a route is judged as it is flown: with the limits that
   /// are wished for, in no volume. Its paths are relative to the current folder.
   std::string flown_scenario() const;
+  /// Of a survey.
+  const SurveyLines& lines() const { return lines_.value(); }
+  const formats::Polygon& area() const { return area_; }
+  double area_m2() const;
   /// Where a route lies over voids of the models: a sentence, "" if nowhere.
   std::string over_voids(const Polyline& route) const;
 
@@ -43,12 +47,18 @@ class FirstRoute {
   std::string environment(const Box& volume, const std::filesystem::path& folder) const;
   std::string vehicle() const;
   std::string point(const WishedPoint& at) const;
+  /// Start, via points and goal; of a survey the start, if there is one, and the task.
+  std::string ends() const;
+  std::string survey_task() const;
+  /// Metres flown, about.
+  double length_m() const;
   /// By how much the limits of height are narrower than wished for, as far as the points allow.
   double flown_margin() const;
   std::string world(const std::string& environment, const Box& volume) const;
   std::string heights(double margin, const std::string& applies_to) const;
   std::string scenario(const Box& volume, const std::filesystem::path& folder) const;
   std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
+  std::string heights_in_words() const;
   double speed_mps() const;
 
   RouteWish wish_;
@@ -56,5 +66,7 @@ class FirstRoute {
   std::vector<std::string> zone_parameters_;  ///< for each of the wish's files
   std::shared_ptr<Registry> registry_;
   Corridor corridor_;
+  std::optional<SurveyLines> lines_;
+  formats::Polygon area_;  ///< of a survey, in the frame
 };
 }  // namespace altiplan::host

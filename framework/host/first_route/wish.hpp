@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "host/first_route/survey.hpp"
+
 namespace altiplan::host {
 
 /// A point as the user gives it.
@@ -30,6 +32,7 @@ struct RouteWish {
   double reserve = 0.2;                 ///< share of the battery
   std::optional<std::string> planner;   ///< none: chosen
   std::optional<std::string> start_time;
+  std::optional<SurveyWish> survey;  ///< in place of a route to a goal
 };
 
 /// Heights above ground, metres.

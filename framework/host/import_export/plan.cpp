@@ -67,8 +67,9 @@ std::array<double, 4> params_of(const MissionItem& item, const MissionText& text
   return {0, 0, radius, 0};
 }
 
+constexpr int kMissionFrame = 2;  // MAV_FRAME_MISSION: without a place
+
 PlanItem speed_item(double speed_mps, int decimals) {
-  constexpr int kMissionFrame = 2;  // MAV_FRAME_MISSION: without a place
   constexpr double kOverGround = 1;
   constexpr double kSameThrottle = -1;
   return {Command::kChangeSpeed,
@@ -145,6 +146,38 @@ Plan plan_of(const MissionText& text) {
     plan.items.push_back(item_of(item, text));
   }
   plan.fence = fence_of(text.mission.zones, text.decimals);
+  return plan;
+}
+
+Plan plan_of(const MissionText& text, const CameraLines& camera) {
+  constexpr double kRounded = 0.1;  // metres
+  Plan plan = plan_of(text);
+  std::vector<PlanItem> items;
+  std::size_t line = 0;
+  bool is_on = false;
+  for (std::size_t n = 0; n < plan.items.size(); ++n) {
+    items.push_back(plan.items[n]);
+    if (n == 0) {
+      items.push_back(speed_item(camera.speed_mps, text.decimals.metres));
+    }
+    const auto is_at = [&](const Vec3& p) { return (text.local[n] - p).norm() < kRounded; };
+    const auto trigger = [&](double metres) {
+      items.push_back(
+          {Command::kCameraTrigger, kMissionFrame, {rounded(metres, text.decimals.metres), 0, 1}});
+      is_on = metres > 0;
+    };
+    if (is_on && is_at(camera.lines[line].back())) {
+      trigger(0);
+      ++line;
+    }
+    if (!is_on && line < camera.lines.size() && is_at(camera.lines[line].front())) {
+      trigger(camera.trigger_m);
+    }
+  }
+  if (line < camera.lines.size()) {
+    throw Error("line " + std::to_string(line) + " of the photos is not among the items");
+  }
+  plan.items = std::move(items);
   return plan;
 }
 

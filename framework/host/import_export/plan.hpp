@@ -20,7 +20,8 @@ struct Command {
   static constexpr int kLoiterToAltitude = 31;
   static constexpr int kVtolTakeoff = 84;
   static constexpr int kVtolLand = 85;
-  static constexpr int kChangeSpeed = 178;      ///< parameters 1: 1, over the ground; 2: m/s
+  static constexpr int kChangeSpeed = 178;    ///< parameters 1: 1, over the ground; 2: m/s
+  static constexpr int kCameraTrigger = 206;  ///< parameters 1: metres, 0: off; 3: a photo at once
   static constexpr int kFencePolygonIn = 5001;  ///< a corner; parameter 1: number of corners
   static constexpr int kFencePolygonOut = 5002;
   static constexpr int kFenceCircleIn = 5003;  ///< parameter 1: radius
@@ -58,6 +59,16 @@ Plan plan_of(const MissionText& mission);
 /// A file's own commands, fence and rally points. Throws Error for a file without commands, or with
 /// a complex item that contains none.
 Plan plan_of(const formats::MissionFile& mission);
+
+/// Photos along parts of a route.
+struct CameraLines {
+  std::vector<Polyline> lines;
+  double trigger_m = 0;  ///< between photos
+  double speed_mps = 0;  ///< commanded before the first item after take-off
+};
+/// The items, with the camera on at each line's first and off, with a last photo, at its last.
+/// Throws Error where a line is not among the items, in order.
+Plan plan_of(const MissionText& mission, const CameraLines& camera);
 
 /// QGroundControl's `.plan`.
 std::string plan_text(const Plan& plan);

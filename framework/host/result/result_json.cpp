@@ -316,7 +316,7 @@ Json result_json(const Config& config, const RunResult& result) {
   json.update(to_json(accepted ? accepted->cost : std::nullopt));
   if (result.task) {
     json["task"] = {{"plugin", config.scenario.task->plugin},
-                    {"passes", result.task->passes},
+                    {"passes", result.task->passes.size()},
                     {"flights", result.task->flights},
                     {"time_s", number(result.task->time_s)},
                     {"bound_s", number(result.task->bound_s)}};

@@ -112,7 +112,7 @@ std::optional<PlanResult> Run::order_task(const Request& request) {
   }
   mission_.via = task_->via(mission_.request);
   const std::lock_guard lock(mutex_);
-  result_.task = OrderedTask{task_->order().passes.size(), task_->flights(mission_.request),
+  result_.task = OrderedTask{task_->order().passes, task_->flights(mission_.request),
                              task_->order().time_s, task_->order().bound_s};
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "altiplan/measures.hpp"
+#include "altiplan/task.hpp"
 #include "host/flight/flight.hpp"
 #include "host/judge/judge.hpp"
 
@@ -36,7 +37,7 @@ struct StepResult {
 
 /// A scenario's task as ordered.
 struct OrderedTask {
-  std::size_t passes = 0;
+  std::vector<Pass> passes;
   std::vector<double> flights;  ///< seconds of each
   double time_s = 0;
   double bound_s = 0;  ///< of all orders of the same passes
