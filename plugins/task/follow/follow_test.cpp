@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "altiplan/flown_route.hpp"
+#include "altiplan/world.hpp"
+#include "support/posts.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::follow_task_test {
@@ -45,6 +48,32 @@ TEST(Follow, KeepsItsDistanceBesideTheLine) {
   // The second pass comes back: it begins at the end of the line.
   EXPECT_GT(order.passes[1].points.front().y(), 800);
   EXPECT_LT(order.passes[1].points.back().y(), 100);
+}
+
+/// A power line over hills: 30 m beside it, and within 2 m of 50 m above the ground.
+TEST(Follow, KeepsItsHeightOverHills) {
+  constexpr int kPosts = 12;
+  std::vector<float> heights;
+  for (int j = 0; j < kPosts; ++j) {
+    for (int i = 0; i < kPosts; ++i) {
+      heights.push_back(float(300 + 40 * std::sin(1.1 * i) * std::cos(0.7 * j)));
+    }
+  }
+  const World world = testing::world_of(std::make_shared<testing::Posts>(
+      HeightField({-100, -100}, {80, 80}, kPosts, kPosts, std::move(heights))));
+  const Polyline line{{0, 0, 0}, {400, 50, 0}, {600, 300, 0}};
+  const auto task = testing::make_task(
+      "follow", "{line_m: [[0, 0], [400, 50], [600, 300]], offsets_m: [30], above_ground_m: 50}",
+      world);
+  const TaskOrder order = task->order(copter(), {});
+  ASSERT_EQ(order.passes.size(), 1U);
+  const Polyline& pass = order.passes[0].points;
+  EXPECT_GT(pass.size(), 8U);
+  for (std::size_t i = 1; i < pass.size(); ++i) {
+    EXPECT_GE(world.ground_gap(pass[i - 1], pass[i]), 48 - 1e-6) << i;
+    EXPECT_LE(world.ground_gap_max(pass[i - 1], pass[i]), 52 + 1e-6) << i;
+    EXPECT_NEAR(away((pass[i - 1] + pass[i]) / 2, line), 30, 1) << i;
+  }
 }
 
 TEST(Follow, RefusesWhatIsNoLine) {
