@@ -351,9 +351,13 @@ std::string FirstRoute::over_voids(const Polyline& route) const {
 
 FirstFiles FirstRoute::files(int attempt, const fs::path& folder) const {
   const Box box = volume(attempt);
-  const Search search = choose_search(
+  Search search = choose_search(
       wish_, heights_, {box, corridor_.length_m(), corridor_.spacing_m(), kTry[attempt].fineness},
       *registry_);
+  if (lines_) {  // passes stay as they are, and joins that need a planner are few
+    search.steps.erase(std::min(search.steps.find("  - smooth"), search.steps.size()));
+    search.words.erase(std::min(search.words.find(", then"), search.words.size()));
+  }
   return {scenario(box, folder),
           std::string("# The search of ") +
               (lines_ ? "a survey, written by altiplan survey"
