@@ -146,12 +146,29 @@ class Survey(unittest.TestCase):
                   if item["command"] == 178]
         self.assertEqual(speeds, [5])
 
+    def test_a_battery(self):
+        area = self.write(kml(RIDGE, FIELD))
+        for wh, code, said in ((20, 1, "flights or more"), (500, 0, "1 flight or more")):
+            out, _ = self.call("survey", area, "--terrain", TERRAIN, *CAMERA, "--battery", str(wh), "--power", "300",
+                               code=code)
+            self.assertIn(said, out)
+            self.assertIn("check: " + ("fail" if code else "pass"), out)
+
     @unittest.skipUnless(DATA.is_dir(), "no test data: set ALTIPLAN_TEST_DATA")
     def test_mountains(self):
         for model, place in (("davosdorf.tif", (9.83, 46.82)), ("N44W072.hgt", (-71.31, 44.28))):
             with self.subTest(model):
                 shutil.rmtree(self.folder / "out", ignore_errors=True)
                 self.survey(self.write(kml(place, FIELD, ISLAND)), str(DATA / "dem" / model))
+
+    def test_areas_that_cannot_be_flown(self):
+        tiny = self.write(kml(RIDGE, [(0, 0), (10, 0), (10, 10)]), "tiny.kml")
+        area = self.write(kml(RIDGE, FIELD, ISLAND))
+        house = "{:.7f},{:.7f}".format(*lonlat(RIDGE, 130, 120))
+        for said, arguments in (("too small", [tiny]), ("outside the islands", [area, "--from", house])):
+            out, _ = self.call("survey", *arguments, "--terrain", TERRAIN, *CAMERA, code=1)
+            self.assertIn("no route", out)
+            self.assertIn(said, out)
 
     def refused(self, said, *arguments, code=3):
         _, err = self.call("survey", *arguments, code=code)

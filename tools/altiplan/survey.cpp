@@ -163,9 +163,18 @@ Surveyed fly(const SurveyArguments& arguments, const host::FirstRoute& first,
   const Polyline& route = surveyed.result.steps[*surveyed.result.accepted].route.waypoints();
   surveyed.voids = first.over_voids(route);
   if (write_plan(folder, arguments, first, surveyed)) {
-    surveyed.report = judged(folder / "route.plan", first, arguments.overrides, {});
+    host::GateOptions gate;
+    if (const host::RouteWish& wish = arguments.wish; wish.battery_wh) {
+      gate.battery = host::Battery{*wish.battery_wh, wish.reserve, *wish.power_w, *wish.power_w};
+    }
+    surveyed.report = judged(folder / "route.plan", first, arguments.overrides, gate);
   }
   return surveyed;
+}
+
+/// So many at least: each also flies out and back.
+int flights_of(const host::EnergyUse& energy) {
+  return int(std::ceil(energy.max_wh / energy.battery.usable_wh()));
 }
 
 host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
@@ -188,6 +197,7 @@ host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
           {"lines", lines.size()},
           {"images", photos_of(lines, first.lines().trigger_m)},
           {"gsd_cm", {100 * camera.gsd_m(heights.lowest), 100 * camera.gsd_m(heights.highest)}},
+          {"flights", report.energy ? host::Json(flights_of(*report.energy)) : host::Json()},
           {"time_s", {report.time.min_s, report.time.max_s}},
           {"metrics", host::to_json(report.measures)}};
 }
@@ -204,6 +214,10 @@ void print(const Surveyed& surveyed, const host::FirstRoute& first, const host::
       fixed(100 * camera.gsd_m(heights.lowest), 3).c_str(),
       fixed(100 * camera.gsd_m(heights.highest), 3).c_str(),
       fixed(100 * surveyed.shown, 2).c_str());
+  if (report.energy) {
+    std::printf("energy: %s: %s or more\n", report.energy->in_words().c_str(),
+                host::counted(std::size_t(flights_of(*report.energy)), "flight").c_str());
+  }
 }
 
 int survey(const SurveyArguments& arguments) {

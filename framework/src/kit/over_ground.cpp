@@ -9,7 +9,7 @@
 namespace altiplan::kit {
 namespace {
 
-constexpr double kShortest = 1;  // metres
+constexpr double kShortest = 0.1;  // metres
 
 class OverGround {
  public:
@@ -45,7 +45,7 @@ class OverGround {
 
   /// Of samples; the middle, where none of them is off.
   Vec3 farthest_off(const Vec3& a, const Vec3& b, double length) const {
-    const int parts = std::clamp(int(length / std::max(kShortest, above_m_ / 10)), 2, 4096);
+    const int parts = std::clamp(int(length / std::max(1.0, above_m_ / 10)), 2, 4096);
     Vec3 worst = (a + b) / 2;
     double off = tolerance_m_;
     for (int k = 1; k < parts; ++k) {

@@ -171,6 +171,10 @@ class Cover final : public Task {
     order.counters = {{"expanded", std::int64_t(found.iterations)}};
     order.budget_hit = !found.is_complete;
     if (found.flown.points.empty()) {
+      if (found.is_complete) {
+        order.message = "the area is too small for a line: lower spacing_m";
+        return order;
+      }
       order.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
       order.message = "the budget ended before the first tour";
       return order;

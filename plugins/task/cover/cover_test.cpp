@@ -194,6 +194,11 @@ TEST(Cover, KeepsClearOfIslands) {
 }
 
 TEST(Cover, RefusesAreasThatAreNone) {
+  const auto tiny =
+      testing::make_task("cover", "{outline_m: [[0, 0], [1, 0], [1, 1]], spacing_m: 30}");
+  const TaskOrder none = tiny->order(copter(), {});
+  EXPECT_EQ(none.status, PlanStatus::no_route);
+  EXPECT_NE(none.message.find("too small"), std::string::npos) << none.message;
   EXPECT_THROW(testing::make_task("cover", "{outline_m: [[0, 0], [9, 9], [9, 0], [0, 9]]}"), Error);
   EXPECT_THROW(testing::make_task("cover", "{holes_m: [[[90, 90], [110, 90], [95, 95]]]}"), Error);
   EXPECT_NE(testing::parameter_problems("task", "cover", "{spacing_m: 0}"), "");

@@ -9,7 +9,7 @@ namespace altiplan::kit {
 /// A line seen from above (heights are ignored) at a height above the ground: its corners exactly
 /// at `above_m`, and more waypoints between them where a straight leg would be off that height by
 /// more than the tolerance, by Douglas and Peucker. Each leg keeps the tolerance everywhere, as the
-/// judge measures it, but for legs below a metre, beside steps of the ground. Throws Error, with
+/// judge measures it, but for legs below 0.1 m, beside steps of the ground. Throws Error, with
 /// the place, where there is no ground.
 ALTIPLAN_API Polyline over_ground(const Polyline& line, const World& world, double above_m,
                                   double tolerance_m);
