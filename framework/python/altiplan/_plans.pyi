@@ -204,7 +204,8 @@ class Plan(Protocol):
             cartesian: how far a waypoint may lie to each side of its place on the straight
             line, in distances of start and goal
         above_ground_m: 2 numbers [m]
-            least and greatest height of waypoints above ground; default: anywhere in the volume
+            minimum and maximum height of waypoints above ground; default: anywhere in the
+            volume
         evaluations: integer, 1 … 1e+09, default 5000
             number of routes that are evaluated, if the budget allows
         rule: word, judge, objective, default "judge"
@@ -267,7 +268,8 @@ class Plan(Protocol):
             cartesian: how far a waypoint may lie to each side of its place on the straight
             line, in distances of start and goal
         above_ground_m: 2 numbers [m]
-            least and greatest height of waypoints above ground; default: anywhere in the volume
+            minimum and maximum height of waypoints above ground; default: anywhere in the
+            volume
         evaluations: integer, 1 … 1e+09, default 5000
             number of routes that are evaluated, if the budget allows
         rule: word, judge, objective, default "judge"
@@ -303,7 +305,8 @@ class Plan(Protocol):
             cartesian: how far a waypoint may lie to each side of its place on the straight
             line, in distances of start and goal
         above_ground_m: 2 numbers [m]
-            least and greatest height of waypoints above ground; default: anywhere in the volume
+            minimum and maximum height of waypoints above ground; default: anywhere in the
+            volume
         evaluations: integer, 1 … 1e+09, default 5000
             number of routes that are evaluated, if the budget allows
         rule: word, judge, objective, default "judge"
@@ -322,7 +325,8 @@ class Plan(Protocol):
         """Hybrid A*: curved legs between poses, searched by position, height and heading
 
         radius_m: number or auto [m], > 0, default "auto"
-            radius of turns; auto: the least that vehicle and constraints allow, else one cell
+            radius of turns; auto: the smallest that vehicle and constraints allow, else one
+            cell
         cell_m: number or auto [m], > 0, default "auto"
             horizontal cell edge length; auto: half the radius, or 1/200 of the volume without a
             limit on turns
@@ -428,7 +432,7 @@ class Plan(Protocol):
             how nodes are joined: by straight legs, or as poses by Dubins paths, which takes a
             turn radius; auto: dubins for a vehicle with a wing
         radius_m: number or auto [m], > 0, default "auto"
-            radius of turns; auto: the least that vehicle and constraints allow"""
+            radius of turns; auto: the smallest that vehicle and constraints allow"""
     @overload
     def __call__(self, file: _Path, name: Literal["jps"], /, start: Any = None, goal: Any = None,
                  seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
@@ -487,7 +491,8 @@ class Plan(Protocol):
             cartesian: how far a waypoint may lie to each side of its place on the straight
             line, in distances of start and goal
         above_ground_m: 2 numbers [m]
-            least and greatest height of waypoints above ground; default: anywhere in the volume
+            minimum and maximum height of waypoints above ground; default: anywhere in the
+            volume
         evaluations: integer, 1 … 1e+09, default 5000
             number of routes that are evaluated, if the budget allows
         rule: word, judge, objective, default "judge"
@@ -546,7 +551,8 @@ class Plan(Protocol):
             cartesian: how far a waypoint may lie to each side of its place on the straight
             line, in distances of start and goal
         above_ground_m: 2 numbers [m]
-            least and greatest height of waypoints above ground; default: anywhere in the volume
+            minimum and maximum height of waypoints above ground; default: anywhere in the
+            volume
         evaluations: integer, 1 … 1e+09, default 5000
             number of routes that are evaluated, if the budget allows
         rule: word, judge, objective, default "judge"
@@ -600,7 +606,7 @@ class Plan(Protocol):
             how nodes are joined: by straight legs, or as poses by Dubins paths, which takes a
             turn radius; auto: dubins for a vehicle with a wing
         radius_m: number or auto [m], > 0, default "auto"
-            radius of turns; auto: the least that vehicle and constraints allow"""
+            radius of turns; auto: the smallest that vehicle and constraints allow"""
     @overload
     def __call__(self, file: _Path, name: Literal["rrt_connect"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
@@ -619,7 +625,7 @@ class Plan(Protocol):
             how nodes are joined: by straight legs, or as poses by Dubins paths, which takes a
             turn radius; auto: dubins for a vehicle with a wing
         radius_m: number or auto [m], > 0, default "auto"
-            radius of turns; auto: the least that vehicle and constraints allow"""
+            radius of turns; auto: the smallest that vehicle and constraints allow"""
     @overload
     def __call__(self, file: _Path, name: Literal["rrt_star"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
@@ -646,7 +652,7 @@ class Plan(Protocol):
             how nodes are joined: by straight legs, or as poses by Dubins paths, which takes a
             turn radius; auto: dubins for a vehicle with a wing
         radius_m: number or auto [m], > 0, default "auto"
-            radius of turns; auto: the least that vehicle and constraints allow
+            radius of turns; auto: the smallest that vehicle and constraints allow
         bound: true or false, default true
             once there is a route, reject samples through which none can be shorter"""
     @overload
@@ -699,7 +705,8 @@ class Plan(Protocol):
             cartesian: how far a waypoint may lie to each side of its place on the straight
             line, in distances of start and goal
         above_ground_m: 2 numbers [m]
-            least and greatest height of waypoints above ground; default: anywhere in the volume
+            minimum and maximum height of waypoints above ground; default: anywhere in the
+            volume
         evaluations: integer, 1 … 1e+09, default 5000
             number of routes that are evaluated, if the budget allows
         rule: word, judge, objective, default "judge"

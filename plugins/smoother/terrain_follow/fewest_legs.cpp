@@ -88,7 +88,7 @@ void FewestLegs::reach(const Node& from, std::size_t station, double low, double
   const double z0 = height(from);
   const double run = stations_[station].s - stations_[from.station].s;
   const double cost = reached_[from.station][from.height].cost + kLeg;
-  if (cost >= worst_[station]) {
+  if (heights.empty() || cost >= worst_[station]) {
     return;
   }
   touched_[station] = true;

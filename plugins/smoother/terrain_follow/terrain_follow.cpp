@@ -46,9 +46,8 @@ struct Params {
         .unit("m")
         .range(0.01, 1000)
         .doc(
-            "the heights of waypoints are multiples of it, except at the ends; of twice, four "
-            "times "
-            "… it where more than 128 are permitted");
+            "the heights of waypoints are multiples of it, except at the ends and where none is "
+            "permitted; of twice, four times … it where more than 128 are permitted");
   }
 };
 
@@ -127,6 +126,9 @@ class Following {
     }
     for (double n = std::ceil(column.low / step); n * step <= column.high; ++n) {
       station.heights.push_back(n * step);
+    }
+    if (station.heights.empty() && column.low <= column.high) {
+      station.heights.push_back((column.low + column.high) / 2);
     }
     return station;
   }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/random.hpp"
 #include "support/posts.hpp"
 #include "support/support.hpp"
@@ -95,6 +96,21 @@ TEST(TerrainFollow, KeepsThePlan) {
     EXPECT_TRUE(std::any_of(points.begin(), points.end(),
                             [&](const Vec3& p) { return (p - corner).head<2>().norm() < 1e-9; }));
   }
+}
+
+TEST(TerrainFollow, FindsABandThatHoldsNoStepOrNoHeight) {
+  const World world = ground(ramp);
+  const Polyline route = above(world, {{10, 50, 0}, {60, 51, 0}, {110, 50, 0}, {290, 51, 0}}, 40);
+  Request request = over(world, route, 36, 44);
+  const PlanResult coarse = followed(route, request, "{station_m: 5, height_step_m: 60}");
+  EXPECT_TRUE(check(coarse.route, request).ok()) << coarse.message;
+  // A wall between two stations leaves no height at one of them.
+  request.world = std::make_shared<const World>(
+      world.with({"wall", "box",
+                  std::make_shared<kit::ShapeLayer>(
+                      std::vector<Shape>{BoxShape{{{150, 0, 0}, {170, 300, 400}}}}),
+                  true}));
+  EXPECT_NE(followed(route, request).message.find("no heights were found"), std::string::npos);
 }
 
 TEST(TerrainFollow, LeavesWhatItCannotImprove) {
