@@ -38,7 +38,7 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
 /// surface, up to its highest point, where the file's coordinate system puts it in the world's
 /// frame. In a world without one, the file's axes in metres are local ones, offset by `origin_m`,
 /// the position that becomes (0, 0): by default the south-west corner of the buildings; a file in
-/// degrees defines the frame.
+/// degrees, or in lengths that are wrong by more than half a per cent, defines the frame.
 Buildings read_city_json(const std::string& file,
                          const std::optional<std::array<double, 2>>& origin_m, const Site& site);
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "altiplan/earth.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/input_file.hpp"
 #include "altiplan/formats/polygon.hpp"
@@ -333,15 +334,18 @@ class Placing {
            (to_sea_level_ ? ", " + system_->heights() : ", heights as given");
   }
 
-  /// Returns the frame that a file in degrees defines for the world.
+  /// Returns the frame that a file defines for the world whose own axes are in degrees, or in
+  /// lengths that are wrong by more than half a per cent.
   std::optional<Frame> place(std::vector<Model>& models) {
     if (!system_) {
       return std::nullopt;
     }
-    const bool defines = !frame_.has_position() && system_->unit_m() == 0;
+    const bool defines = !frame_.has_position() && !is_true_to_scale(models);
     if (defines) {
       if (is_own_) {
-        throw Error("is in degrees (" + system_->name() + "), where origin_m has no meaning");
+        throw Error("is in " +
+                    std::string(system_->unit_m() == 0 ? "degrees" : "lengths that are not true") +
+                    " (" + system_->name() + "), where origin_m has no meaning");
       }
       std::vector<formats::Point2> places;
       for (const Model& model : models) {
@@ -368,6 +372,28 @@ class Placing {
   }
 
  private:
+  /// As elevation models are held to: about the first vertex, along both axes.
+  bool is_true_to_scale(const std::vector<Model>& models) const {
+    constexpr double kMaxError = 0.005;
+    constexpr double kStep = 100;  // of the system's units
+    for (const Model& model : models) {
+      if (model.vertices.empty()) {
+        continue;
+      }
+      const Vec3& v = model.vertices.front();
+      const auto place = [&](double east, double north) {
+        const auto at = system_->to_wgs84({v.x() + east, v.y() + north, v.z()});
+        return LonLat{at[0], at[1]};
+      };
+      const auto is_true = [&](const LonLat& to) {
+        const double metres = geodesic_course(place(0, 0), to).metres;
+        return std::abs(metres / (kStep * system_->unit_m()) - 1) <= kMaxError;
+      };
+      return system_->unit_m() > 0 && is_true(place(kStep, 0)) && is_true(place(0, kStep));
+    }
+    return system_->unit_m() > 0;
+  }
+
   const std::optional<MapSystem>& system_;
   bool is_own_;
   bool to_sea_level_ = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <map>
 
 #include "altiplan/error.hpp"
@@ -200,6 +201,38 @@ TEST(City, CityJsonIsNeverSmallerThanItsModel) {
   EXPECT_LT(layer->clearance({36.5, 8, 7}), 0);
   EXPECT_GT(layer->clearance({37.5, 8, 7}), 0);
   EXPECT_GT(layer->clearance({18, 9, 5}), 0);
+}
+
+/// A building of 40 m by 40 m at 60 degrees north, where Web Mercator doubles lengths.
+TEST(City, MetresAreMetresOnTheGround) {
+  const std::string json = R"({"type": "CityJSON", "version": "2.0",
+    "metadata": {"referenceSystem": "https://www.opengis.net/def/crs/EPSG/0/CODE"},
+    "transform": {"scale": [1, 1, 1], "translate": [EAST, NORTH, 0]},
+    "CityObjects": {"b": {"type": "Building", "geometry": [{"type": "Solid", "lod": "1",
+      "boundaries": [[[[3, 2, 1, 0]], [[4, 5, 6, 7]], [[0, 1, 5, 4]], [[1, 2, 6, 5]],
+                      [[2, 3, 7, 6]], [[3, 0, 4, 7]]]]}]}},
+    "vertices": [[0, 0, 0], [SIDE, 0, 0], [SIDE, SIDE, 0], [0, SIDE, 0],
+                 [0, 0, 9], [SIDE, 0, 9], [SIDE, SIDE, 9], [0, SIDE, 9]]})";
+  const TempFolder folder;
+  const auto written = [&](std::string text, const char* code, const char* east, const char* north,
+                           const char* side) {
+    for (const auto& [word, value] : {std::pair("CODE", code), std::pair("EAST", east),
+                                      std::pair("NORTH", north), std::pair("SIDE", side)}) {
+      for (std::size_t at; (at = text.find(word)) != text.npos;) {
+        text.replace(at, std::strlen(word), value);
+      }
+    }
+    return folder.write(std::string(code) + ".city.json", text).string();
+  };
+  const std::string mercator = written(json, "3857", "2771815", "8399737", "80");
+  const std::string utm = written(json, "25835", "400000", "6652000", "40");
+  for (const std::string& file : {mercator, utm}) {
+    const Box box = city("{file: " + file + "}")->bounds();
+    EXPECT_NEAR(box.max.x() - box.min.x(), 40, 0.3) << file;
+    EXPECT_NEAR(box.max.y() - box.min.y(), 40, 0.3) << file;
+  }
+  EXPECT_NE(refusal("{file: " + mercator + ", origin_m: [0, 0]}").find("lengths that are not true"),
+            std::string::npos);
 }
 
 TEST(City, RealFilesAreReadWhole) {
