@@ -164,9 +164,9 @@ void Walker::fly_rounds(std::size_t n) {
   constexpr double kEqual = 1e-6;  // seconds
   Round& last = rounds_[n];
   const TimeSpan time{mission_.time.min_s - last.end.min_s, mission_.time.max_s - last.end.max_s};
-  const bool is_alike = std::abs(time.min_s - last.time.min_s) < kEqual &&
+  const bool is_alike = way_to(n) == last.way && std::abs(time.min_s - last.time.min_s) < kEqual &&
                         std::abs(time.max_s - last.time.max_s) < kEqual;
-  last = {mission_.time, time, is_alike ? last.alike + 1 : 0};
+  last = {mission_.time, way_to(n), time, is_alike ? last.alike + 1 : 0};
   if (last.alike <= kFlownAnew) {
     return;
   }

@@ -181,14 +181,15 @@ class Walker {
   using Way = std::array<double, 8>;
   Way way_to(std::size_t n) const;
   std::map<Way, Flown> flown_;
-  /// What a jump has the vehicle fly again: when the last round ended, how long it took, and how
-  /// many before took as long.
+  /// What a jump has the vehicle fly again: when the last round ended, of which home and at which
+  /// speeds, how long it took, and how many before were alike.
   struct Round {
     TimeSpan end;
+    Way way{};
     TimeSpan time;
     std::size_t alike = 0;
   };
-  /// Flies the rounds of a jump that are left at once, where they take as long as those before.
+  /// Flies the rounds of a jump that are left at once, where they are as those before.
   void fly_rounds(std::size_t n);
   std::map<std::size_t, Round> rounds_;
   int homes_set_ = 0;
