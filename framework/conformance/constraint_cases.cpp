@@ -22,6 +22,7 @@ struct ConstraintBench {
   Factory<Constraint> make;
   Factory<Constraint> tighter;
   Options options;
+  std::shared_ptr<const World> before;  ///< world of the site; without layers: one of the suite
 };
 
 /// Limits as numbers, of which a smaller one is stricter.
@@ -101,12 +102,15 @@ Limits random_limits(RandomStream& random) {
   return limits;
 }
 
-/// Over ground, among solids, at the scale of typical constraints: hundreds of metres.
-Scene scene_of(std::uint64_t seed) {
-  Scene scene = random_scene(100, seed, Flight::spatial);
+/// At the scale of typical constraints, hundreds of metres: over ground, among solids; or in the
+/// world of the constraint's site, whose ground it may know.
+Scene scene_of(const ConstraintBench& bench, std::uint64_t n) {
+  Scene scene = random_scene(100, bench.options.seed * 100 + n, Flight::spatial);
   scene.ridge = std::make_shared<Ridge>(1000, 120, 0.2);
-  scene.request.world = std::make_shared<const World>(
-      scene.request.world->with({"ridge", "conformance", scene.ridge, true}));
+  scene.request.world = bench.before != nullptr && !bench.before->layers().empty()
+                            ? bench.before
+                            : std::make_shared<const World>(scene.request.world->with(
+                                  {"ridge", "conformance", scene.ridge, true}));
   return scene;
 }
 
@@ -157,7 +161,7 @@ ConstraintAnswers ask(const Constraint& constraint, const ConstraintBench& bench
                       bool backward = false) {
   ConstraintAnswers answers;
   for (int n = 0; n < bench.options.rounds; ++n) {
-    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n));
+    const Scene scene = scene_of(bench, std::uint64_t(n));
     RandomStream random = RandomStream(bench.options.seed).sub("ask", std::uint64_t(n));
     Limits limits = random_limits(random);
     constraint.tighten(limits, scene.request);
@@ -206,7 +210,7 @@ void pure(const ConstraintBench& bench, Report& report) {
 void tightens(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
   for (int n = 0; n < 50 * bench.options.rounds; ++n) {
-    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
+    const Scene scene = scene_of(bench, std::uint64_t(n % 5));
     RandomStream random = RandomStream(bench.options.seed).sub("limits", std::uint64_t(n));
     const Limits before = random_limits(random);
     Limits once = before;
@@ -236,7 +240,7 @@ void legs_and_routes(const ConstraintBench& bench, Report& report) {
   bool says_anything = false;
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("legs", std::uint64_t(n));
-    const Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
+    const Scene scene = scene_of(bench, std::uint64_t(n % 5));
     for (int k = 0; k < 20; ++k) {
       const Motion leg = random_leg(random, bench.options, scene);
       const bool admitted = constraint->admits(leg);
@@ -292,25 +296,53 @@ bool depends_on_place(const Constraint& constraint, const Motion& leg, RandomStr
   return false;
 }
 
-/// Legs through refused ones: a constraint that looks at a leg's ends alone admits them.
+/// Puts both ends at heights above the ground, if there is any: low over hills places differ.
+void over_ground(Motion& leg, RandomStream& random) {
+  for (Vec3* end : {&leg.from, &leg.to}) {
+    if (const std::optional<double> ground = leg.world->ground(end->x(), end->y())) {
+      end->z() = *ground + std::pow(10, random.uniform(0, 3));
+    }
+  }
+}
+
+/// Legs through refused ones: a constraint that looks at a leg's ends alone admits them. The
+/// refused part is drawn first and lengthened, or cut out of a leg whose ends are admitted: beyond
+/// the world or the range of a constraint nothing may be.
 void legs_through_refused_ones(const ConstraintBench& bench, Report& report) {
   const auto constraint = bench.make();
-  const Scene scene = scene_of(bench.options.seed * 100);
+  const Scene scene = scene_of(bench, 0);
+  const auto through = [&](const Motion& part, const Motion& whole, RandomStream& random) {
+    report.expect(!constraint->admits(whole) || !depends_on_place(*constraint, part, random),
+                  kThrough, [&] {
+                    return motion_text(whole) + " is admitted, and its part, " + motion_text(part) +
+                           ", refused";
+                  });
+  };
   for (int n = 0; n < 400 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("through", std::uint64_t(n));
-    Motion part = random_leg(random, bench.options, scene);
-    part.before.reset();
-    if (constraint->admits(part) || part.from == part.to) {
+    Motion leg = random_leg(random, bench.options, scene);
+    leg.before.reset();
+    if (n % 2 == 1) {
+      over_ground(leg, random);
+    }
+    const Vec3 along = leg.to - leg.from;
+    if (along.isZero()) {
       continue;
     }
-    for (const double longer : {1.0, 10.0, 100.0}) {
-      const Vec3 by = longer * (part.to - part.from);
-      const Motion whole{std::nullopt, part.from - by, part.to + by, part.world};
-      report.expect(!constraint->admits(whole) || !depends_on_place(*constraint, part, random),
-                    kThrough, [&] {
-                      return motion_text(whole) + " is admitted, and its part, " +
-                             motion_text(part) + ", refused";
-                    });
+    if (!constraint->admits(leg)) {
+      for (const double longer : {1.0, 10.0, 100.0}) {
+        through(leg, {std::nullopt, leg.from - longer * along, leg.to + longer * along, leg.world},
+                random);
+      }
+      continue;
+    }
+    for (int k = 0; k < 4; ++k) {
+      const double from = random.uniform();
+      const double to = from + (1 - from) * std::pow(10, random.uniform(-3, 0));
+      const Motion part{std::nullopt, leg.from + from * along, leg.from + to * along, leg.world};
+      if (!constraint->admits(part)) {
+        through(part, leg, random);
+      }
     }
   }
 }
@@ -320,7 +352,7 @@ void legs_through_refused_ones(const ConstraintBench& bench, Report& report) {
 void agrees_with_the_judge(const ConstraintBench& bench, Report& report) {
   const std::shared_ptr<const Constraint> constraint = bench.make();
   for (int n = 0; n < 20 * bench.options.rounds; ++n) {
-    Scene scene = scene_of(bench.options.seed * 100 + std::uint64_t(n % 5));
+    Scene scene = scene_of(bench, std::uint64_t(n % 5));
     RandomStream random = RandomStream(bench.options.seed).sub("judge", std::uint64_t(n));
     const Polyline route = random_route(random, scene);
     Request& request = scene.request;
@@ -350,7 +382,7 @@ void agrees_with_the_judge(const ConstraintBench& bench, Report& report) {
 
 void odd_questions(const ConstraintBench& bench, Report&) {
   const auto constraint = bench.make();
-  const Scene scene = scene_of(bench.options.seed);
+  const Scene scene = scene_of(bench, 0);
   const Vec3 p = scene.request.start.position;
   for (const Polyline& route :
        {Polyline{}, Polyline{p}, Polyline{p, p}, Polyline{p, p, p},
@@ -373,7 +405,7 @@ void odd_questions(const ConstraintBench& bench, Report&) {
 Cases constraint_cases(const ConstraintFactory& make, const ConstraintFactory& tighter,
                        const Options& options, const std::shared_ptr<const World>& before) {
   const ConstraintBench bench{on_site(make, options, before), on_site(tighter, options, before),
-                              options};
+                              options, before};
   return cases_on(bench, kConstraintPure,
                   {{"answers_do_not_depend_on_history_or_threads", pure},
                    {"tighten_never_loosens", tightens},

@@ -6,6 +6,7 @@
 
 #include "altiplan/request.hpp"
 #include "altiplan/route.hpp"
+#include "altiplan/world.hpp"
 #include "bad_entries.hpp"
 
 namespace {
@@ -96,6 +97,15 @@ bool only_ends(const Motion& leg, double limit) {
   return leg.from.norm() >= away && leg.to.norm() >= away;
 }
 
+/// In sight of a mast and within its range, as far as the leg's ends tell.
+bool ends_in_sight(const Motion& leg, double limit) {
+  const Vec3 mast{0, 0, limit / 2};
+  const auto is_seen = [&](const Vec3& p) {
+    return (p - mast).norm() <= 6000 && leg.world->ground_gap(mast, p) >= 0;
+  };
+  return leg.world == nullptr || (is_seen(leg.from) && is_seen(leg.to));
+}
+
 using Violations = std::vector<Violation>;
 
 Violations impure(const Polyline&, double limit) { return {{"", 0, limit + ++calls, limit, "so"}}; }
@@ -140,6 +150,8 @@ ALTIPLAN_PLUGIN(Constraint, "long_leg", Told<admitting<long_leg>>, Params,
                 "admits more with the stricter parameter")
 ALTIPLAN_PLUGIN(Constraint, "only_ends", Told<admitting<only_ends>>, Params,
                 "keeps away from a place with the ends of legs alone")
+ALTIPLAN_PLUGIN(Constraint, "ends_in_sight", Told<admitting<ends_in_sight>>, Params,
+                "looks for the shadow of hills at the ends of legs alone")
 ALTIPLAN_PLUGIN(Constraint, "divides", Told<admitting<divides>>, Params,
                 "throws at a leg without a direction")
 ALTIPLAN_PLUGIN(Constraint, "impure", Told<violating<impure>>, Params,

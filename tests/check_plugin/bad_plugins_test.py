@@ -62,6 +62,7 @@ LIBRARIES = {
     "no_list": "exports no list of plugins",
     "undefined_symbol": "calls a function that no library has",
     "ends_the_process": "aborts where it is loaded",
+    "libaltiplan_constraint_theta": "is named unlike its plugin",
     "other_kind": "announces a smoother and holds a constraint",
 }
 

@@ -16,14 +16,30 @@ using conformance::Case;
 using conformance::Cases;
 
 constexpr const char* kManifest = "Library: a manifest that matches this altiplan";
+constexpr const char* kNamedAlike = "Library: named after its only plugin";
 constexpr const char* kLoads = "Library: loads, with all symbols and all listed plugins";
 constexpr const char* kSymbols = "Library: exports altiplan_plugins and nothing else";
 
+/// The name that altiplan_add_plugin gives to a library of this plugin.
+std::string file_of(const Manifest& plugin) {
+  return std::string("libaltiplan_") + plugin.kind + "_" + plugin.name + ".so";
+}
+
 Outcome manifest_fits(const host::Library& library) {
-  if (library.refused.empty()) {
-    return {};
+  if (!library.refused.empty()) {
+    return {{{kManifest, library.refused}}, "", false, ""};
   }
-  return {{{kManifest, library.refused}}, "", false, ""};
+  const std::string file = library.file.filename().string();
+  if (file.starts_with("libaltiplan_") && library.plugins.size() == 1 &&
+      file != file_of(library.plugins.front())) {
+    return {{{kNamedAlike, "expected " + file_of(library.plugins.front()) +
+                               ", after the kind and the name in ALTIPLAN_PLUGIN: name both alike "
+                               "in altiplan_add_plugin"}},
+            "",
+            false,
+            ""};
+  }
+  return {};
 }
 
 Outcome exports_one_symbol(const host::Library& library) {
