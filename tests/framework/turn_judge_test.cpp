@@ -153,12 +153,6 @@ TEST(TurnJudge, AStartOnTheWrongCourseIsNotAtTheGoal) {
   EXPECT_EQ(violated(result.route, request), Rules{});
 }
 
-/// Admits no leg within 300 m of the origin.
-class Quiet final : public Constraint {
-  bool do_admits(const Motion& leg) const override {
-    return leg_distance(Cylinder{0, 0}, leg.from, leg.to) >= 300;
-  }
-};
 class Plain final : public Constraint {
   bool do_admits_all() const override { return true; }
 };
@@ -181,20 +175,6 @@ TEST(Decorator, IsAskedThoughItsConstraintAdmitsAll) {
                     AppliesTo::route);
   EXPECT_FALSE(request.constraints[0].admits_all);
   EXPECT_FALSE(check(Polyline{kStart, request.goal.position}, request).ok());
-}
-
-TEST(EndsOfAConstraint, AreNamedIfItRefusesThem) {
-  Request request = open_request({1000, 0, 100});
-  apply_constraints(request,
-                    {{"quiet", std::make_shared<Quiet>()}, {"plain", std::make_shared<Plain>()}},
-                    AppliesTo::route);
-  EXPECT_FALSE(request.constraints[0].admits_all);
-  EXPECT_TRUE(request.constraints[1].admits_all);
-  const PlanResult result =
-      testing::make_planner("astar", "{cell_m: [100, 100, 100]}")->plan(request);
-  EXPECT_EQ(result.status, PlanStatus::no_route);
-  EXPECT_TRUE(result.message.ends_with("; the constraint 'quiet' refuses the start itself"))
-      << result.message;
 }
 
 TEST(TurnJudge, APlannerThatKnowsNoLoiterCirclesSaysSo) {

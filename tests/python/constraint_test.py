@@ -102,6 +102,16 @@ steps:
         self.assertAlmostEqual(held["metrics"]["length_m"], same["metrics"]["length_m"], 6)
         self.assertGreaterEqual(held["metrics"]["min_clearance_m"], 20 - 1e-6)
 
+    def test_a_refused_start_is_named_once(self):
+        pipeline = self.constraint("def admits(self, leg):\n"
+                                   "    return min(leg.start[0], leg.end[0]) > 300")
+        text = pipeline.read_text().replace("]}}", "]}, else: [{plan: theta_star}]}")
+        pipeline.write_text(text)
+        held, _ = self.result(pipeline, code=1)
+        said = [step["message"].count("; the constraint 'tested' refuses the start itself")
+                for step in held["steps"]]
+        self.assertEqual((held["status"], said), ("no_route", [1, 0]))
+
     def test_nothing_is_loosened(self):
         held, _ = self.result(self.constraint("def tighten(self, request):\n"
                                               "    return {'min_clearance_m': 0, 'max_climb': 1.5}"))

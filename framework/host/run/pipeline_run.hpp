@@ -89,6 +89,9 @@ class Run {
   /// True if a flight continues the session of that plan step.
   bool flown_with(const std::string& id) const;
   void plan(const StepEntry& entry, StepResult& step);
+  /// The first plan of a run that finds no route names the constraints that refuse a leg of no
+  /// length at the start or the goal: the reason is often theirs.
+  PlanResult explained(PlanResult result, const Request& request);
   void smooth(const StepEntry& entry, StepResult& step);
   /// Smooths the sections between via points, which stay.
   PlanResult between_via(const Smoother& smoother, const Route& before, const Request& request);
@@ -148,7 +151,8 @@ class Run {
   const RunOptions& options_;
   Mission mission_;
   std::optional<TaskSections> task_;  ///< once it is ordered
-  std::mutex mutex_;                  ///< guards result_ and caller_ against the watchdog
+  bool ends_explained_ = false;
+  std::mutex mutex_;  ///< guards result_ and caller_ against the watchdog
   std::string caller_;
   RunResult result_;
   std::map<std::string, std::size_t> left_by_;  ///< index of the step whose route an id refers to

@@ -2,6 +2,7 @@
 #include "host/run/pipeline_run.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace altiplan::host {
 
@@ -123,6 +124,23 @@ bool Run::flown_with(const std::string& id) const {
   return names_it(last) || std::any_of(last.otherwise.begin(), last.otherwise.end(), names_it);
 }
 
+PlanResult Run::explained(PlanResult result, const Request& request) {
+  const bool failed =
+      result.status == PlanStatus::no_route || result.status == PlanStatus::timed_out;
+  if (!failed || std::exchange(ends_explained_, true)) {
+    return result;
+  }
+  for (const auto& [end, p] :
+       {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
+    for (const NamedConstraint& named : request.constraints) {
+      if (!named.admits_all && !named.admits({std::nullopt, p, p, request.world.get()})) {
+        result.message += "; the constraint '" + named.name + "' refuses the " + end + " itself";
+      }
+    }
+  }
+  return result;
+}
+
 void Run::plan(const StepEntry& entry, StepResult& step) {
   const auto began = Clock::now();
   const PlanPlugin& made = make_plan(entry);
@@ -141,10 +159,10 @@ void Run::plan(const StepEntry& entry, StepResult& step) {
     if (!flown_with(entry.id)) {
       PlanResult result = plan_along(request, mission_.via, part_of(made));
       result.budget_hit = result.budget_hit || (task_ && task_->order().budget_hit);
-      return result;
+      return explained(std::move(result), request);
     }
     sessions_[entry.id] = begin_session(made, request);
-    return sessions_[entry.id]->result();
+    return explained(sessions_[entry.id]->result(), request);
   });
   judge_step(step, mission_.request);
 }

@@ -115,32 +115,12 @@ std::optional<PlanResult> impossible_ends(const Request& request) {
   return std::nullopt;
 }
 
-namespace {
-/// Names the constraints that refuse a leg of no length at the start or the goal, for a message.
-std::string refusing_ends(const Request& request) {
-  std::string text;
-  for (const auto& [end, p] :
-       {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
-    for (const NamedConstraint& named : request.constraints) {
-      if (!named.admits_all && !named.admits({std::nullopt, p, p, request.world.get()})) {
-        text += "; the constraint '" + named.name + "' refuses the " + end + " itself";
-      }
-    }
-  }
-  return text;
-}
-}  // namespace
-
 PlanResult Planner::plan(const Request& request) const {
   if (auto result = settled(request, *this)) {
     return *std::move(result);
   }
-  PlanResult result = held_to_contract(guarded([&] { return do_plan(request); }), request.start,
-                                       request.goal, request.budget);
-  if (result.status == PlanStatus::no_route || result.status == PlanStatus::timed_out) {
-    result.message += refusing_ends(request);
-  }
-  return result;
+  return held_to_contract(guarded([&] { return do_plan(request); }), request.start, request.goal,
+                          request.budget);
 }
 
 std::unique_ptr<Session> Planner::begin(const Request& request) const {
