@@ -81,18 +81,18 @@ void add_download(App& app, Action& action) {
   auto [command, arguments] = add_command<DownloadArguments>(
       app, action, "download", "write a vehicle's mission, fence and rally points to a file",
       download_plan);
-  add_link_options(command, "--from", arguments.link);
+  add_link_options(command, "--link,--from", arguments.link);
   command.add_option("-o,--out FILE", arguments.out, "output file: .plan, or .waypoints (mission)")
       ->required()
       ->check(out_problem);
-  set_example(command, "altiplan download --from udp:127.0.0.1:14550 -o mission.plan");
+  set_example(command, "altiplan download --link udp:127.0.0.1:14550 -o mission.plan");
 }
 
 void add_status(App& app, Action& action) {
   auto [command, options] = add_command<LinkOptions>(
       app, action, "status", "print a vehicle's mode, position, battery and mission count",
       print_status);
-  add_link_options(command, "--from", options);
-  set_example(command, "altiplan status --from udp:127.0.0.1:14550");
+  add_link_options(command, "--link,--from", options);
+  set_example(command, "altiplan status --link udp:127.0.0.1:14550");
 }
 }  // namespace altiplan::cli

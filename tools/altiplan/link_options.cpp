@@ -23,9 +23,9 @@ std::optional<link::Signer> signer_of(const LinkOptions& options) {
 }
 }  // namespace
 
-void add_link_options(App& command, const char* address, LinkOptions& options) {
+void add_link_options(App& command, const char* names, LinkOptions& options) {
   command
-      .add_option(std::string(address) + " ADDRESS", options.address,
+      .add_option(std::string(names) + " ADDRESS", options.address,
                   "the vehicle: udp:HOST:PORT, udpin:[HOST:]PORT to listen (default host "
                   "127.0.0.1), tcp:HOST:PORT or serial:DEVICE:BAUD")
       ->required()

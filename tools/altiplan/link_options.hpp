@@ -17,8 +17,9 @@ struct LinkOptions {
   double timeout_s = 10;
 };
 
-/// Adds the address under this name, and the other options.
-void add_link_options(App& command, const char* address, LinkOptions& options);
+/// Adds the address under these names ("--link" and what else scripts call it), and the other
+/// options.
+void add_link_options(App& command, const char* names, LinkOptions& options);
 
 /// A vehicle that has been heard.
 struct Connection {

@@ -79,10 +79,10 @@ void add_upload(App& app, Action& action) {
       app, action, "upload",
       "judge a result's route or a mission, upload it to a vehicle and compare what that holds",
       upload_result, prepare);
-  add_link_options(command, "--to", arguments.link);
+  add_link_options(command, "--link,--to", arguments.link);
   add_route_export(command, arguments.route, true);
   add_mission_options(command, arguments.mission);
   add_fence_options(command, arguments.fence);
-  set_example(command, "altiplan upload result.json --to udp:127.0.0.1:14550 --takeoff --land");
+  set_example(command, "altiplan upload result.json --link udp:127.0.0.1:14550 --takeoff --land");
 }
 }  // namespace altiplan::cli
