@@ -23,6 +23,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cli"))
 from edit_session import PIPELINE, EditCase  # noqa: E402
 
 PICTURES = os.environ.get("ALTIPLAN_PICTURES")
+TERRAIN = pathlib.Path(__file__).resolve().parents[2] / "configs/data/jacksboro_fault.tif"
 # The text of all that a scene fills.
 TEXTS = """const text = (id) => document.getElementById(id).innerText;
 document.getElementById('tab_metrics').click();
@@ -126,6 +127,39 @@ class Page(EditCase):
         self.await_(lambda: not self.sets())
         self.still()
         self.assertEqual(self.route(), before)
+
+    def test_an_item_of_a_mission(self):
+        plan = self.folder / "m.plan"
+        items = [{"type": "SimpleItem", "command": 16, "frame": 0, "doJumpId": n + 1, "autoContinue": True,
+                  "params": [0, 0, 0, 0, lat, lon, 1500]}
+                 for n, (lon, lat) in enumerate([(-84.3, 36.5), (-84.28, 36.54), (-84.24, 36.56)])]
+        plan.write_text(json.dumps({"fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
+            "geoFence": {"version": 2, "circles": [], "polygons": []},
+            "rallyPoints": {"version": 2, "points": []},
+            "mission": {"version": 2, "firmwareType": 3, "vehicleType": 2, "items": items, "cruiseSpeed": 15,
+                        "hoverSpeed": 5,
+                        "plannedHomePosition": [36.5, -84.3, 400]}}))
+        session = self.begin(plan, "--terrain", TERRAIN, "--min-agl", "100")
+        self.driver.get(session.address.geturl())
+        self.await_(lambda: self.browser.run("return window.altiplan?.ready"))
+        self.addCleanup(self.assert_quiet)
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('.handle')]"
+                                          ".map((one) => one.dataset.number)"), ["1", "2", "3"])
+        self.assertRegex(self.find("#judged").text, "^pass: ")
+        before = self.route()
+        drag = ActionChains(self.driver, duration=20).click_and_hold(self.handle("mission.items.2"))
+        for _ in range(10):
+            drag.move_by_offset(-4, 1)
+        drag.release().perform()
+        self.await_(lambda: self.state()["undo"] and not self.state()["quick"])
+        self.assertNotEqual(self.route(), before)
+        self.driver.execute_async_script(
+            "const done = arguments[0]; altiplan.editor.move('mission.items.2', [0, 0, -900], 0, false).then(done);")
+        self.await_(lambda: self.find("#judged").text.startswith("fail: "))
+        self.assertIn("item 3", self.find("#judged ol").text)
+        self.assertNotIn("pass", self.find("body").text)
+        self.press("#save")
+        self.await_(lambda: json.loads(plan.read_text())["mission"]["items"][2]["params"][6] == 600)
 
     def test_sizes_are_pulled(self):
         self.open("?flat")

@@ -506,10 +506,56 @@ std::string JudgedPlan::verdict() const {
   return std::string(word_of(report.verdict())) + ": " + figures_of(report);
 }
 
-JudgedPlan judged_plan(const PlanCheck& given, const host::Overrides& overrides) {
+Vec3 JudgedPlan::in_frame(const Vec3& p, const Frame& page) const {
+  const Frame& own = world.truth.frame();
+  if (&own == &page) {
+    return p;
+  }
+  const auto [lon, lat] = own.to_lonlat(p.x(), p.y());
+  const auto [x, y] = page.to_local(lon, lat);
+  return {x, y, p.z()};
+}
+
+host::JudgedLine JudgedPlan::line(const Frame& page) const {
+  host::JudgedLine shown;
+  shown.file = report.file;
+  shown.verdict = verdict();
+  shown.status =
+      report.verdict() == host::Verdict::pass ? host::RunStatus::solved : host::RunStatus::rejected;
+  // What is refused at upload flies nowhere: as it is drawn.
+  shown.line = report.line.empty() ? report.imported.route : Route(report.line);
+  if (&page != &world.truth.frame()) {
+    Polyline moved;
+    for (const Vec3& point : shown.line) {
+      moved.push_back(in_frame(point, page));
+    }
+    shown.line = Route(std::move(moved));
+  }
+  shown.measures = report.measures;
+  shown.notes = report.notes;
+  const std::vector<std::string> sentences = findings();
+  for (std::size_t n = 0; n < sentences.size(); ++n) {
+    Violation violation = report.findings[n].violation;
+    violation.message = sentences[n];
+    violation.at = 0;
+    if (const std::optional<Vec3>& found = report.findings[n].at) {
+      const Vec3 at = in_frame(*found, page);
+      const auto nearest =
+          std::min_element(shown.line.begin(), shown.line.end(), [&](const Vec3& a, const Vec3& b) {
+            return (a - at).squaredNorm() < (b - at).squaredNorm();
+          });
+      violation.at = std::size_t(nearest - shown.line.begin());
+    }
+    shown.check.violations.push_back(std::move(violation));
+  }
+  return shown;
+}
+
+JudgedPlan judged_plan(const PlanCheck& given, const host::Overrides& overrides,
+                       const std::optional<std::string>& text) {
   expect_files(given);
   PlanCheck plan = prepared(given);
-  return judge(plan, formats::read_file(plan.plan), std::nullopt, overrides);
+  return judge(plan, text ? *text : formats::read_file(plan.plan), std::nullopt, overrides);
 }
 
 int check_plan(const PlanCheck& given, const host::Overrides& overrides) {

@@ -7,6 +7,7 @@
 
 #include "host/config/config.hpp"
 #include "host/gate/plan_report.hpp"
+#include "host/view/scene.hpp"
 
 namespace altiplan::cli {
 
@@ -48,10 +49,17 @@ struct JudgedPlan {
   std::vector<std::string> findings() const;
   /// "pass: mission.plan, 16 waypoints, 10.713 km, at least 53.1 m above ground, 17.9 to 21.7 min"
   std::string verdict() const;
+  /// The line as it is flown, with that verdict, for a page of that frame: that of another world
+  /// about the mission, or its own.
+  host::JudgedLine line(const Frame& page) const;
+  /// A point of the report in the page's frame.
+  Vec3 in_frame(const Vec3& p, const Frame& page) const;
 };
 
-/// Judges a ground station's mission; prints and writes nothing.
-JudgedPlan judged_plan(const PlanCheck& plan, const host::Overrides& overrides);
+/// Judges a ground station's mission, or another text in the place of its file's; prints and writes
+/// nothing.
+JudgedPlan judged_plan(const PlanCheck& plan, const host::Overrides& overrides,
+                       const std::optional<std::string>& text = std::nullopt);
 
 /// Judges a ground station's mission; prints each violation with its items, its place and, where
 /// one item's change cures it, that change. Writes a certificate, JUnit XML and the cured mission

@@ -12,11 +12,13 @@
 #include <cstring>
 
 #include "commands.hpp"
+#include "edit_mission.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/program.hpp"
 #include "host/config/yaml.hpp"
 #include "host/edit/session.hpp"
 #include "host/mission/mission.hpp"
+#include "mission_options.hpp"
 #include "serve/serve.hpp"
 
 namespace altiplan::cli {
@@ -27,6 +29,7 @@ namespace fs = std::filesystem;
 struct EditArguments {
   std::vector<std::string> files;
   bool has_browser = true;
+  MissionOptions mission;
   host::Overrides overrides;
 };
 
@@ -122,7 +125,22 @@ void open_browser(const std::string& address) {
   ::_exit(1);
 }
 
-/// The process that serves the page; ends when the page is closed.
+/// Serves the session's page until it is closed.
+template <class Session>
+void serve_until_closed(Session& session, bool has_browser) {
+  serve::Server server;
+  server.answer = [&](const host::PageRequest& request) { return session.answer(request); };
+  server.begun = [&](const std::string& address) {
+    std::printf("%s\n", address.c_str());
+    std::fflush(stdout);
+    if (has_browser) {
+      open_browser(address);
+    }
+  };
+  (*serve_function())(server);
+}
+
+/// The process that serves the page of pipelines.
 [[noreturn]] void serve_page(const Opened& opened, const Frame& frame, const fs::path& folder,
                              int socket, bool has_browser) {
   // It must not outlive the one that plans.
@@ -131,16 +149,7 @@ void open_browser(const std::string& address) {
   try {
     host::PlanLine line(socket);
     host::EditSession session(opened.pipelines, opened.given, frame, folder, line);
-    serve::Server server;
-    server.answer = [&](const host::PageRequest& request) { return session.answer(request); };
-    server.begun = [&](const std::string& address) {
-      std::printf("%s\n", address.c_str());
-      std::fflush(stdout);
-      if (has_browser) {
-        open_browser(address);
-      }
-    };
-    (*serve_function())(server);
+    serve_until_closed(session, has_browser);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "altiplan: %s\n", error.what());
     code = kInternal;
@@ -149,6 +158,11 @@ void open_browser(const std::string& address) {
 }
 
 int edit(const EditArguments& arguments) {
+  if (!arguments.mission.plan.plan.empty()) {
+    MissionEditor editor(arguments.mission.plan, arguments.overrides);
+    serve_until_closed(editor, arguments.has_browser);
+    return kDone;
+  }
   const Opened opened = open_all(arguments);
   // Plugins are loaded and their files read once, for all that is forked from here.
   const host::Mission mission = host::build_mission(opened.pipelines.front().config, 1);
@@ -176,15 +190,31 @@ int edit(const EditArguments& arguments) {
 }  // namespace
 
 void add_edit(App& app, Action& action) {
+  const auto prepare = [](EditArguments& arguments) {
+    for (const std::string& file : arguments.files) {
+      if (!is_mission(arguments.mission, file)) {
+        continue;
+      }
+      if (arguments.files.size() > 1) {
+        throw UsageError{"a mission is edited alone"};
+      }
+      arguments.mission.plan = checked_plan(arguments.mission, file);
+    }
+  };
   auto [command, arguments] = add_command<EditArguments>(
-      app, action, "edit", "edit a scenario in the browser, planned again while you drag", edit);
+      app, action, "edit",
+      "edit a scenario in the browser, planned again while you drag, or a mission's items, judged "
+      "again",
+      edit, prepare);
   command
       .add_option("files", arguments.files,
-                  "pipelines of one scenario, a scenario (YAML) or a result (JSON)")
+                  "pipelines of one scenario, a scenario (YAML) or a result (JSON); or a mission "
+                  "(.plan, .waypoints)")
       ->required();
   command.add_flag("!--no-browser", arguments.has_browser,
                    "print the page's address only, open no browser");
   add_overrides(command, arguments.overrides);
+  add_mission_options(command, arguments.mission);
   set_example(command, "altiplan edit configs/pipelines/ridge_crossing.yaml");
 }
 }  // namespace altiplan::cli

@@ -143,31 +143,7 @@ host::Scene scene_of_mission(const ViewArguments& arguments) {
     expect_apart(output, option, {file});
   }
   const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.overrides);
-  const host::PlanReport& report = judged.report;
-  host::JudgedLine shown;
-  shown.file = file;
-  shown.verdict = judged.verdict();
-  shown.status =
-      report.verdict() == host::Verdict::pass ? host::RunStatus::solved : host::RunStatus::rejected;
-  // What is refused at upload flies nowhere: as it is drawn.
-  shown.line = report.line.empty() ? report.imported.route : Route(report.line);
-  shown.measures = report.measures;
-  shown.notes = report.notes;
-  const std::vector<std::string> findings = judged.findings();
-  for (std::size_t n = 0; n < findings.size(); ++n) {
-    Violation violation = report.findings[n].violation;
-    violation.message = findings[n];
-    violation.at = 0;
-    if (const std::optional<Vec3>& at = report.findings[n].at) {
-      const auto nearest =
-          std::min_element(shown.line.begin(), shown.line.end(), [&](const Vec3& a, const Vec3& b) {
-            return (a - *at).squaredNorm() < (b - *at).squaredNorm();
-          });
-      violation.at = std::size_t(nearest - shown.line.begin());
-    }
-    shown.check.violations.push_back(std::move(violation));
-  }
-  return host::line_scene(shown, judged.world);
+  return host::line_scene(judged.line(judged.world.truth.frame()), judged.world);
 }
 
 int view(const ViewArguments& arguments) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
+
+#include "altiplan/geometry.hpp"
+#include "host/base/json.hpp"
 
 namespace altiplan::host {
 
@@ -16,4 +20,24 @@ struct PageAnswer {
   std::string type = "application/json";
   std::string body;
 };
+
+/// The answer to a request, by its path and its wish, a JSON object; null: nothing is at that path.
+using PageWork = std::function<PageAnswer(const std::string& path, const Json& wish)>;
+
+/// The work's answer to a posted wish; 404 for another method, 400 with {"error": one line} for a
+/// wish that is not as expected, or that fails.
+PageAnswer answer_to_post(const PageRequest& request, const PageWork& work);
+/// The answer where nothing is at the address.
+PageAnswer nothing_there();
+PageAnswer json_answer(const Json& json);
+/// A scene with what can be edited, as the page that its own server answers.
+PageAnswer edited_page(const Json& scene);
+
+/// {"error": the text}, as every failed answer.
+std::string error_answer(const std::string& text);
+
+/// [east, north, up] in finite metres. Throws Error.
+Vec3 moved_by(const Json& json);
+/// A word for the name of a new file, which must not lead out of the folder. Throws Error.
+std::string file_word(const std::string& word);
 }  // namespace altiplan::host

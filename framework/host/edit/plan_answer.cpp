@@ -3,6 +3,7 @@
 
 #include "host/describe/describe.hpp"
 #include "host/edit/movable.hpp"
+#include "host/edit/page_request.hpp"
 #include "host/edit/plan_task.hpp"
 #include "host/flight/events.hpp"
 #include "host/result/stored_result.hpp"
@@ -168,6 +169,4 @@ std::string plan_answer(const PlanTask& task, const std::vector<EditedPipeline>&
       return text_of(plugins(pipelines));
   }
 }
-
-std::string error_answer(const std::string& text) { return text_of(Json{{"error", text}}); }
 }  // namespace altiplan::host

@@ -49,7 +49,4 @@ PlanTask plan_task(const Json& json);
 /// returns, and must not.
 std::string plan_answer(const PlanTask& task, const std::vector<EditedPipeline>& pipelines,
                         const std::function<void(const std::string&)>& on_stuck);
-
-/// {"error": the text}, as every failed answer.
-std::string error_answer(const std::string& text);
 }  // namespace altiplan::host

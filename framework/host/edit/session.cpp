@@ -10,14 +10,9 @@
 #include "host/config/yaml_edit.hpp"
 #include "host/edit/movable.hpp"
 #include "host/import_export/route_format.hpp"
-#include "host/view/viewer_page.hpp"
 
 namespace altiplan::host {
 namespace {
-
-/// The page may talk to its own server and to nobody else.
-constexpr std::string_view kNoNetwork = "default-src 'none';";
-constexpr std::string_view kOwnServer = "default-src 'none'; connect-src 'self';";
 
 constexpr std::size_t kMaxKey = 200;
 
@@ -56,29 +51,6 @@ Value applied(Value tree, const std::vector<std::string>& set, FileOfKey file) {
   return tree;
 }
 
-Vec3 vector_of(const Json& json) {
-  if (!json.is_array() || json.size() != 3) {
-    throw Error("expected [east, north, up] in metres");
-  }
-  const Vec3 by(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-  if (!by.allFinite()) {
-    throw Error("expected finite metres");
-  }
-  return by;
-}
-
-/// A problem of the wish in one line.
-std::string sentence_of(const std::exception& error) {
-  if (const auto* config = dynamic_cast<const ConfigError*>(&error)) {
-    const auto& problem = config->problems().front();
-    return problem.key.empty() ? problem.message : problem.key + ": " + problem.message;
-  }
-  if (dynamic_cast<const Json::exception*>(&error) != nullptr) {
-    const std::string why = error.what();
-    return "the request is not as expected: " + why.substr(why.find("] ") + 2);
-  }
-  return error.what();
-}
 }  // namespace
 
 EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assignment> given,
@@ -100,36 +72,22 @@ EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assi
 }
 
 PageAnswer EditSession::answer(const PageRequest& request) {
-  try {
-    if (request.method == "GET" && request.path == "/") {
-      return page();
-    }
-    if (request.method == "GET" && request.path == "/plugins") {
-      const PlanTask task{PlanTask::Kind::plugins};
-      return {200, "application/json", line_.finish(line_.begin(task)).value_or("[]")};
-    }
-    if (request.method != "POST") {
-      return {404, "application/json", error_answer("there is nothing at this address")};
-    }
-    const Json wish = request.body.empty() ? Json::object() : parse_json(request.body);
-    if (!wish.is_object()) {
-      throw Error("expected a JSON object");
-    }
-    if (request.path == "/export") {
-      return exported(wish);
-    }
-    const Json json = request.path == "/edit"      ? change(wish)
-                      : request.path == "/compare" ? compared()
-                      : request.path == "/save"    ? saved(wish)
-                      : request.path == "/upload"  ? uploaded(wish)
-                                                   : Json();
-    if (json.is_null()) {
-      return {404, "application/json", error_answer("there is nothing at this address")};
-    }
-    return {200, "application/json", json_text(json)};
-  } catch (const std::exception& error) {
-    return {400, "application/json", error_answer(sentence_of(error))};
+  if (request.method == "GET" && request.path == "/plugins") {
+    const PlanTask task{PlanTask::Kind::plugins};
+    return {200, "application/json", line_.finish(line_.begin(task)).value_or("[]")};
   }
+  if (request.method == "GET" && request.path == "/") {
+    return answer_to_post({"POST", request.path, ""},
+                          [&](const std::string&, const Json&) { return page(); });
+  }
+  return answer_to_post(request, [&](const std::string& path, const Json& wish) {
+    return path == "/export"    ? exported(wish)
+           : path == "/edit"    ? json_answer(change(wish))
+           : path == "/compare" ? json_answer(compared())
+           : path == "/save"    ? json_answer(saved(wish))
+           : path == "/upload"  ? json_answer(uploaded(wish))
+                                : nothing_there();
+  });
 }
 
 PageAnswer EditSession::page() {
@@ -158,9 +116,7 @@ PageAnswer EditSession::page() {
   for (const RouteFormat& format : route_formats()) {
     scene["edit_formats"].push_back({format.name, format.extension});
   }
-  std::string page = viewer_page(scene);
-  page.replace(page.find(kNoNetwork), kNoNetwork.size(), kOwnServer);
-  return {200, "text/html; charset=utf-8", std::move(page)};
+  return edited_page(scene);
 }
 
 std::size_t EditSession::pipeline_of(const Json& wish) const {
@@ -185,7 +141,7 @@ std::vector<Assignment> EditSession::assignments_of(const Json& wish) const {
     const Value scenario = applied(trees_.back(), texts_for(before, 0), FileOfKey::scenario);
     const Json& move = wish.at("move");
     for (const std::string& text :
-         moved(scenario, move.at("key").get<std::string>(), vector_of(move.at("by")), frame_)) {
+         moved(scenario, move.at("key").get<std::string>(), moved_by(move.at("by")), frame_)) {
       add(text);
     }
   }

@@ -18,21 +18,6 @@ namespace fs = std::filesystem;
 /// The seconds that a command may take: an upload waits for its autopilot.
 constexpr std::chrono::seconds kCommandTime{60};
 
-constexpr std::size_t kMaxName = 64;
-
-/// A name for a new file, which must not lead out of the folder.
-std::string file_name(const std::string& name) {
-  const bool is_plain = !name.empty() && name.size() <= kMaxName &&
-                        std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                          return std::isalnum(c) != 0 || c == '_' || c == '-';
-                        });
-  if (!is_plain) {
-    throw Error("'" + name.substr(0, kMaxName) +
-                "': expected a name of at most 64 letters, digits, '-' and '_'");
-  }
-  return name;
-}
-
 /// The file's name with a suffix, beside it.
 fs::path named(const fs::path& file, const std::string& suffix) {
   return file.parent_path() / (file.stem().string() + suffix + ".yaml");
@@ -50,7 +35,7 @@ std::string last_line_of(const fs::path& file) {
 Json EditSession::saved(const Json& wish) {
   const std::lock_guard lock(mutex_);
   const bool is_new = wish.contains("as");
-  const std::string suffix = is_new ? "_" + file_name(wish.at("as")) : "";
+  const std::string suffix = is_new ? "_" + file_word(wish.at("as")) : "";
   const Texts written = is_new ? new_texts(suffix) : changed_texts();
   for (const auto& [place, text] : written) {
     if (const std::string problem = output_problem(place); !problem.empty()) {
@@ -163,6 +148,6 @@ PageAnswer EditSession::exported(const Json& wish) {
 
 Json EditSession::uploaded(const Json& wish) {
   const std::lock_guard one_at_a_time(commands_);
-  return run_command(wish, {"upload"}, {"--to", wish.at("address")});
+  return run_command(wish, {"upload"}, {"--link", wish.at("address")});
 }
 }  // namespace altiplan::host

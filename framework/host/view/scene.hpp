@@ -39,4 +39,6 @@ struct JudgedLine {
 
 /// The world around the line, and the line.
 Scene line_scene(const JudgedLine& judged, const Mission& world);
+/// The line alone, to be shown in a page that has its world: `start`, `goal`, `results`, `notes`.
+Json line_parts(const JudgedLine& judged, const Mission& world);
 }  // namespace altiplan::host

@@ -86,6 +86,7 @@ class Handle {
     this.item = item;
     this.made.classList.toggle('selected', selected);
     this.made.dataset.key = item.key;
+    this.made.dataset.number = item.number || '';
     this.made.classList.toggle('size', ['radius', 'corner', 'vertex'].includes(item.kind));
     this.made.title = item.of ? `${item.name}: drag, or move it by the arrow keys.` :
       `${item.name}: drag; with Shift in height. Arrow keys, Page up and down move it.`;

@@ -24,10 +24,14 @@ export function build_panel(view, world, store, editor, message) {
   const panel = element('aside', {id: 'edit', ariaLabel: 'Edit'});
   by_id('side').after(panel);
   message.setAttribute('role', 'status');
-  const placing = build_placing(view, world, store, editor);
   const [history, items, steps, limits, command] = ['div', 'div', 'div', 'div', 'div']
     .map((tag) => element(tag, {}));
   editor.remove = (item) => remove(item, editor);
+  if (editor.state.mission) {
+    build_mission(panel, history, items, message, editor);
+    return;
+  }
+  const placing = build_placing(view, world, store, editor);
   panel.append(history, message, element('h2', {}, 'Add'), add_buttons(placing), placing.hint,
     element('h2', {}, 'Change'), items, element('h2', {}, 'Pipelines'), steps,
     element('h2', {}, 'Constraints'), limits, element('h2', {}, 'Take it along'),
@@ -61,6 +65,23 @@ export function build_panel(view, world, store, editor, message) {
   listen_to_keys(editor);
 }
 
+/** Of a mission: its items, and the verdict of altiplan check. */
+function build_mission(panel, history, items, message, editor) {
+  const verdict = element('div', {id: 'judged'});
+  panel.append(history, message, element('h2', {}, 'Move'), items, element('h2', {}, 'Check'), verdict);
+  const reflect = () => {
+    const {verdict: text, findings} = editor.state;
+    verdict.replaceChildren(element('p', {}, text),
+      element('ol', {}, findings.map((finding) => element('li', {}, finding))));
+    if (editor.dragging) return;
+    history.replaceChildren(...history_buttons(editor));
+    items.replaceChildren(...items_form(editor, []));
+  };
+  editor.on_change(reflect);
+  reflect();
+  listen_to_keys(editor);
+}
+
 function history_buttons(editor) {
   const {undo, redo} = editor.state;
   return [element('div', {className: 'row'},
@@ -87,9 +108,9 @@ function items_form(editor, plugins) {
     onchange: (event) => editor.select(event.target.value || null)},
   element('option', {value: ''}, 'click a handle, or choose'),
   movable.map(({key, name, kind}) => element('option', {value: key, selected: key === selected},
-    kind === name.toLowerCase() ? name : `${name} (${kind})`)));
+    kind === 'item' || kind === name.toLowerCase() ? name : `${name} (${kind})`)));
   const item = editor.item(selected);
-  if (!item) return [choice];
+  if (!item || item.kind === 'item') return [choice];
   const map = at_path(state.scenario, item.key) ?? {};
   const change = (prefix) => (key, text) =>
     editor.set([text === null ? `~scenario.${prefix}.${key}` : `scenario.${prefix}.${key}=${text}`]);
@@ -112,6 +133,10 @@ function items_form(editor, plugins) {
 }
 
 function remove(item, editor) {
+  if (item.kind === 'item') {
+    editor.say('Items of a mission are moved here, not removed.');
+    return;
+  }
   if (['start', 'goal'].includes(item.kind)) {
     editor.say(`A scenario needs its ${item.kind}.`);
     return;

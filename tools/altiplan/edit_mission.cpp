@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit_mission.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "altiplan/formats/input_file.hpp"
+#include "host/base/output_file.hpp"
+#include "host/gate/changed_plan.hpp"
+#include "host/import_export/route_format.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using host::Json;
+
+/// True of an item with a position of its own that is one of the file's, not of a complex item,
+/// which its ground station makes anew.
+bool is_movable(const formats::MissionFile& mission, const std::string& place) {
+  const auto command = std::find_if(
+      mission.commands.begin(), mission.commands.end(),
+      [&](const formats::MissionCommand& one) { return one.place == place && one.has_position(); });
+  return command != mission.commands.end() && std::count(place.begin(), place.end(), '.') <= 2;
+}
+
+std::vector<MovableItem> items_of(const JudgedPlan& judged, const Frame& page) {
+  const host::ImportedRoute& drawn = judged.report.imported;
+  std::vector<MovableItem> items;
+  std::set<std::string> seen;
+  for (std::size_t n = 0; n < std::min(drawn.items.size(), drawn.route.size()); ++n) {
+    const formats::MissionItem& item = drawn.items[n];
+    if (is_movable(judged.mission, item.place) && seen.insert(item.place).second) {
+      items.push_back({item.place, judged.report.name_of_point(n), item.number,
+                       judged.in_frame(drawn.route[n], page)});
+    }
+  }
+  return items;
+}
+
+Json movable(const std::vector<MovableItem>& items) {
+  Json all = Json::array();
+  for (const MovableItem& item : items) {
+    all.push_back({{"key", item.place},
+                   {"kind", "item"},
+                   {"plugin", ""},
+                   {"name", item.name},
+                   {"number", item.number},
+                   {"at", host::to_json(Polyline{item.at})[0]}});
+  }
+  return all;
+}
+}  // namespace
+
+MissionEditor::MissionEditor(PlanCheck check, host::Overrides overrides)
+    : check_(std::move(check)),
+      overrides_(std::move(overrides)),
+      saved_(formats::read_file(check_.plan)),
+      opened_(judged_plan(check_, overrides_, saved_)),
+      judged_(opened_) {
+  static_cast<void>(host::changed_plan(saved_, judged_.mission.format, {}));  // refuses others
+  states_.push_back({saved_, 0, items_of(opened_, opened_.world.truth.frame())});
+}
+
+host::PageAnswer MissionEditor::answer(const host::PageRequest& request) {
+  const std::lock_guard lock(mutex_);
+  if (request.method == "GET" && request.path == "/") {
+    return page();
+  }
+  if (request.method == "GET" && request.path == "/plugins") {
+    return host::json_answer(Json::array());
+  }
+  return host::answer_to_post(request, [&](const std::string& path, const Json& wish) {
+    return path == "/edit"   ? host::json_answer(change(wish))
+           : path == "/save" ? host::json_answer(saved(wish))
+                             : host::nothing_there();
+  });
+}
+
+host::PageAnswer MissionEditor::page() {
+  Json scene = host::line_scene(judged_.line(opened_.world.truth.frame()), opened_.world).json;
+  scene["title"] = fs::path(check_.plan).filename();  // the verdict changes
+  scene["movable"] = movable(now().items);
+  scene["edit"] = state();
+  scene["edit_formats"] = Json::array();
+  return host::edited_page(scene);
+}
+
+JudgedPlan MissionEditor::judged(const std::string& text, bool quick) const {
+  if (!quick) {
+    return judged_plan(check_, overrides_, text);
+  }
+  JudgedPlan same{host::read_mission_file(check_.plan, text), opened_.world, {}, opened_.gate};
+  same.report = host::judge_plan(check_.plan, same.mission, same.world, same.gate);
+  return same;
+}
+
+std::string MissionEditor::moved(const std::string& place, const Vec3& by,
+                                 std::uint64_t gesture) const {
+  const bool goes_on = gesture != 0 && now_ > 0 && now().gesture == gesture;
+  const State& before = states_[goes_on ? now_ - 1 : now_];
+  const auto item = std::find_if(before.items.begin(), before.items.end(),
+                                 [&](const MovableItem& one) { return one.place == place; });
+  if (item == before.items.end()) {
+    throw Error("there is no item '" + place + "' to move");
+  }
+  host::ChangedItem change{place, {}, by.z()};
+  if (by.x() != 0 || by.y() != 0) {
+    const auto [lon, lat] =
+        opened_.world.truth.frame().to_lonlat(item->at.x() + by.x(), item->at.y() + by.y());
+    change.lonlat = {lon, lat};
+  }
+  return host::changed_plan(before.text, judged_.mission.format, {change});
+}
+
+Json MissionEditor::change(const Json& wish) {
+  const std::string history = wish.value("history", "");
+  const auto gesture = wish.value("gesture", std::uint64_t(0));
+  const bool quick = wish.value("quick", false);
+  std::size_t at = now_;
+  std::vector<State> states = states_;
+  if (history == "undo") {
+    at -= at > 0 ? 1 : 0;
+  } else if (history == "redo") {
+    at += at + 1 < states.size() ? 1 : 0;
+  } else if (!history.empty()) {
+    throw Error("history: expected undo or redo, found '" + history + "'");
+  } else if (wish.contains("move")) {
+    const Json& move = wish.at("move");
+    std::string text = moved(move.at("key"), host::moved_by(move.at("by")), gesture);
+    at += gesture != 0 && at > 0 && now().gesture == gesture ? 0 : 1;
+    states.resize(at);
+    states.push_back({std::move(text), gesture, {}});
+  }
+  // What cannot be judged is not kept.
+  JudgedPlan judged_now = judged(states[at].text, quick);
+  const Frame& frame = opened_.world.truth.frame();
+  states[at].items = items_of(judged_now, frame);
+  judged_ = std::move(judged_now);
+  states_ = std::move(states);
+  now_ = at;
+  ++number_;
+  Json answer = host::line_parts(judged_.line(frame), opened_.world);
+  answer["movable"] = movable(now().items);
+  Json json = state();
+  json["quick"] = quick;
+  json["answers"] = Json::array({std::move(answer)});
+  return json;
+}
+
+Json MissionEditor::saved(const Json& wish) {
+  const fs::path file = check_.plan;
+  const bool is_new = wish.contains("as");
+  const fs::path place =
+      is_new ? file.parent_path() / (file.stem().string() + "_" + host::file_word(wish.at("as")) +
+                                     file.extension().string())
+             : file;
+  if (!is_new && now().text == saved_) {
+    return {{"files", Json::array()}};
+  }
+  if (const std::string problem = host::output_problem(place); !problem.empty()) {
+    throw Error(problem);
+  }
+  if (is_new && fs::exists(place)) {
+    throw Error("'" + place.string() + "' is there already: save under another name");
+  }
+  if (!is_new && formats::read_file(file) != saved_) {
+    throw Error("'" + file.string() +
+                "' has been changed by another program: save under another name, or open it anew");
+  }
+  host::write_file(place, now().text);
+  if (!is_new) {
+    saved_ = now().text;
+  }
+  return {{"files", {place.string()}}};
+}
+
+Json MissionEditor::state() const {
+  return {{"number", number_},
+          {"undo", now_ > 0},
+          {"redo", now_ + 1 < states_.size()},
+          {"world", ""},
+          {"scenario", Json::object()},
+          {"pipelines", Json::array()},
+          {"mission", check_.plan},
+          {"verdict", judged_.verdict()},
+          {"findings", judged_.findings()}};
+}
+}  // namespace altiplan::cli
