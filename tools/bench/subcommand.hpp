@@ -63,4 +63,5 @@ void add_replan(Subcommands& all);
 void add_sampling(Subcommands& all);
 void add_search(Subcommands& all);
 void add_terrain(Subcommands& all);
+void add_watch(Subcommands& all);
 }  // namespace altiplan::bench
