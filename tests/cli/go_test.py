@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -147,6 +148,33 @@ class Go(unittest.TestCase):
             "type": "FeatureCollection", "features": [{
                 "type": "Feature", "geometry": {"type": "Polygon", "coordinates": [ring]},
                 "properties": properties} for ring in rings]}))
+
+    def test_speed_climb_and_wind(self):
+        ends = ["--terrain", TERRAIN, *ENDS]
+        slow, _ = self.call("go", *ends, "-o", "slow")
+        fast, _ = self.call("go", *ends, "--speed", "15", "--climb", "2", "--wind", "8,270", "-o", "fast")
+        self.assertIn("15 m/s, wind of 8 m/s from 270 deg", fast)
+        scenario = (self.folder / "fast/scenario.yaml").read_text()
+        self.assertIn("speed_mps: 15, climb_mps: 2, sink_mps: 2", scenario)
+        self.assertIn("wind: {from_deg: 270, speed_mps: 8}", scenario)
+        items = json.loads((self.folder / "fast/route.plan").read_text())["mission"]["items"]
+        self.assertEqual([(one["command"], one["params"][1]) for one in items[:2]], [(22, 0), (178, 15)])
+        minutes = [float(re.search(r"check: pass, .*? to ([0-9.]+) min", out)[1]) for out in (slow, fast)]
+        self.assertLess(minutes[1], 0.75 * minutes[0])
+        (self.folder / "p.param").write_text("AIRSPEED_MIN,18\nAIRSPEED_CRUISE,22\nAIRSPEED_MAX,30\n")
+        wing = ["go", *ends, "--wing", "80", "--speed", "22"]
+        out, _ = self.call(*wing, "--wind", "5,0", "-o", "unknown", code=1)
+        self.assertIn("minimum airspeed, 9 m/s, is not judged: give its parameters (--params)", out)
+        out, _ = self.call(*wing, "--params", "p.param", "-o", "wing")
+        self.assertIn("check: pass", out)
+        for options, code, said in ((["--wing", "30", "--speed", "40"], 3, "take a bank of 80 degrees"),
+                                    (["--wind", "12,3"], 3, "not less than the speed, 10 m/s"),
+                                    (["--wind", "12"], 2, "expected M/S,DEGREES"),
+                                    (["--wind", "3,361"], 2, "expected M/S,DEGREES"),
+                                    (["--params", "none.param"], 3, "none.param")):
+            _, err = self.call("go", *ends, *options, "-o", "none", code=code)
+            self.assertIn(said, err)
+        self.assertFalse((self.folder / "none").exists())
 
     def test_zones_at_their_hours(self):
         self.zones("wall.geojson", WALL, **{"from": "2026-05-01T10:00:00Z",

@@ -88,7 +88,8 @@ std::vector<std::string> ends_in_zones(const host::Mission& mission) {
   add("the goal", mission.request.goal.position);
   return sentences;
 }
-/// Numbers separated by commas; none if the text is anything else.
+}  // namespace
+
 std::optional<std::vector<double>> numbers(const std::string& text) {
   std::vector<double> all;
   const char* at = text.data();
@@ -109,8 +110,6 @@ std::optional<std::vector<double>> numbers(const std::string& text) {
     at = stop + 1;
   }
 }
-
-}  // namespace
 
 void add_terrain(App& command, FirstArguments& arguments) {
   command

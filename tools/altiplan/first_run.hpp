@@ -29,6 +29,8 @@ void add_terrain(App& command, FirstArguments& arguments);
 void add_first_options(App& command, FirstArguments& arguments, const std::string& folder);
 /// The wish with models and zones, without points.
 host::RouteWish wish_of_first(const FirstArguments& arguments);
+/// Finite numbers separated by commas; none if the text is anything else.
+std::optional<std::vector<double>> numbers(const std::string& text);
 /// The error message for LON,LAT[,AGL]; "" if it is valid.
 std::string point_problem(const std::string& text);
 host::WishedPoint point_of(const char* option, const std::string& text);

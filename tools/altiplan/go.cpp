@@ -22,7 +22,19 @@ struct GoArguments : FirstArguments {
   std::string from;
   std::string to;
   std::vector<std::string> via;
+  std::optional<std::string> wind;
+  std::optional<std::string> parameters;
   bool copter = false;
+
+  /// Who flies it: in a wind an aeroplane is judged in that strength, from anywhere.
+  host::GateOptions gate() const {
+    host::GateOptions options;
+    options.flight.wind_mps = wish.wind ? wish.wind->speed_mps : 0;
+    if (parameters) {
+      options.flight.parameters = host::read_parameters(*parameters);
+    }
+    return options;
+  }
 };
 
 host::RouteWish wish_of(const GoArguments& arguments) {
@@ -33,6 +45,17 @@ host::RouteWish wish_of(const GoArguments& arguments) {
   }
   wish.points.push_back(point_of("--to", arguments.to));
   return wish;
+}
+
+/// The error message for M/S,DEGREES; "" if it is valid.
+std::string wind_problem(const std::string& text) {
+  const auto wind = numbers(text);
+  return wind && wind->size() == 2 && wind->front() >= 0 && wind->front() <= 100 &&
+                 wind->back() >= 0 && wind->back() <= 360
+             ? ""
+             : "expected M/S,DEGREES (0 to 100; where it comes from, 0 to 360, clockwise from "
+               "north), without spaces, found '" +
+                   text + "'";
 }
 
 /// True where another corridor or smaller cells may help.
@@ -57,9 +80,9 @@ void print(const host::RunResult& result) {
 
 /// The plan with fly-by items for turns, if that passes; else with all of their points.
 std::string few_items(const LoadedRoute& loaded, const RouteExport& route,
-                      const host::Exported& written) {
+                      const host::Exported& written, const host::GateOptions& gate) {
   const host::FewestItems fewest = busy("searching the fewest items", [&] {
-    return host::fewest_items(loaded.mission, loaded.source, route.options, written.mission, {});
+    return host::fewest_items(loaded.mission, loaded.source, route.options, written.mission, gate);
   });
   if (!fewest.passed()) {
     return *written.text;
@@ -67,6 +90,11 @@ std::string few_items(const LoadedRoute& loaded, const RouteExport& route,
   std::printf("items: %zu, which pass as they are flown, in place of %zu\n",
               fewest.plan.items.size(), host::plan_of(written.mission).items.size());
   return host::plan_text(fewest.plan);
+}
+
+/// The mission with a command for the speed, which a copter does not take from a plan.
+std::string with_speed(const host::Exported& written, double speed_mps) {
+  return host::plan_text(host::plan_of(written.mission, host::CameraLines{{}, 0, speed_mps}));
 }
 
 /// The page, and the mission; false if the route would not be valid as a mission.
@@ -87,14 +115,21 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
   const std::optional<host::Exported> plan = source ? exported(*source, route) : std::nullopt;
   if (plan) {
     host::write_file(folder / "route.plan",
-                     is_wing ? few_items(*source, route, *plan) : *plan->text);
+                     is_wing                    ? few_items(*source, route, *plan, arguments.gate())
+                     : arguments.wish.speed_mps ? with_speed(*plan, *arguments.wish.speed_mps)
+                                                : *plan->text);
   }
   std::printf("written: %s/: page.html, %sresult.json, scenario.yaml, pipeline.yaml\n",
               folder.c_str(), plan ? "route.plan, " : "");
   return plan.has_value();
 }
 
-int go(const GoArguments& arguments) {
+int go(GoArguments arguments) {
+  static_cast<void>(arguments.gate());  // a bad file is refused before anything is made
+  if (arguments.wind) {
+    const std::vector<double> wind = numbers(*arguments.wind).value();
+    arguments.wish.wind = {wind.front(), wind.back()};
+  }
   std::optional<Activity> activity("reading the model");
   const host::RouteWish wish = wish_of(arguments);
   const host::FirstRoute first(wish, arguments.overrides.plugin_path);
@@ -149,7 +184,8 @@ int go(const GoArguments& arguments) {
   if (!is_mission) {
     return kNoRoute;
   }
-  const host::PlanReport report = judged(folder / "route.plan", first, arguments.overrides, {});
+  const host::PlanReport report =
+      judged(folder / "route.plan", first, arguments.overrides, arguments.gate());
   print_check(report);
   return report.passed() ? kDone : kNoRoute;
 }
@@ -177,6 +213,18 @@ void add_wishes(App& command, GoArguments& arguments) {
                   "plan for an aeroplane with this turn radius")
       ->check(number_from(1, 5000))
       ->excludes(copter);
+  const auto rate = [&](const char* name, std::optional<double>& value, const char* what) {
+    command.add_option(std::string(name) + " M/S", value, what)->check(number_from(0.1, 200));
+  };
+  rate("--speed", wish.speed_mps, "speed through the air (default: chosen)");
+  rate(
+      "--climb", wish.climb_mps,
+      "greatest rates of climb and sink (default: of an aeroplane 10 degrees, of a copter those of "
+      "ArduPilot's defaults)");
+  command.add_option("--params FILE", arguments.parameters,
+                     "the autopilot's parameters (.param, .params), in place of its defaults");
+  command.add_option("--wind M/S,DEGREES", arguments.wind, "wind, and where it comes from")
+      ->check(wind_problem);
   add_first_options(command, arguments, "the model's name");
 }
 }  // namespace

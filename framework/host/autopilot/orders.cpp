@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 
@@ -82,7 +83,9 @@ void Walker::set_hover_speed() {
 void Walker::set_wing_speed() {
   flight_.wind_mps = options_.wind_mps;
   if (options_.wind_mps > min_airspeed() / 2) {
-    give_up(0, "flight in a wind of more than half its minimum airspeed is not judged");
+    give_up(0, "flight in a wind of more than half its minimum airspeed, " +
+                   with_digits(min_airspeed(), 3) +
+                   " m/s, is not judged: give its parameters (--params), or less wind");
   } else if (options_.wind_mps == 0) {
     flight_.remark(Weight::note, "wind", 0, "is judged in still air (--wind)");
   }

@@ -16,6 +16,7 @@ namespace {
 constexpr double kCopterSpeed = 10;
 constexpr double kCopterRadius = 1;
 constexpr double kBank = 30;  // degrees
+constexpr double kMaxBank = 60;
 constexpr double kGravity = 9.80665;
 
 /// How far a copter's flight may be off the drawn route: corners are rounded, and numbers stored,
@@ -105,6 +106,7 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
       throw Error(std::string("--avoid: ") + error.what());
     }
   }
+  expect_flyable();
   if (wish_.survey) {
     lines_ = lines_of(*wish_.survey);
     heights_ = heights_of_photos(wish_, *lines_);
@@ -117,6 +119,9 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
 
 /// As slow as turns of the radius allow at the bank, rounded up.
 double FirstRoute::speed_mps() const {
+  if (wish_.speed_mps) {
+    return *wish_.speed_mps;
+  }
   if (lines_) {  // the camera keeps up, rounded down
     return std::min(kCopterSpeed, std::max(0.1, std::floor(lines_->max_mps * 10) / 10));
   }
@@ -125,6 +130,29 @@ double FirstRoute::speed_mps() const {
   }
   const double speed = std::sqrt(*wish_.turn_radius_m * kGravity * std::tan(radians(kBank)));
   return std::ceil(speed * 100) / 100;
+}
+
+/// As turns of the radius take at the speed, rounded down so that they are no tighter.
+double FirstRoute::bank_deg() const {
+  if (!wish_.speed_mps) {
+    return kBank;
+  }
+  const double speed = speed_mps();
+  return std::floor(1e6 * degrees(std::atan(speed * speed / (*wish_.turn_radius_m * kGravity)))) /
+         1e6;
+}
+
+/// Throws Error for a speed that turns of the radius do not allow, or that the wind exceeds.
+void FirstRoute::expect_flyable() const {
+  if (wish_.turn_radius_m && bank_deg() > kMaxBank) {
+    throw Error("--speed: turns of " + in_metres(*wish_.turn_radius_m) + " at " +
+                text_of(speed_mps()) + " m/s take a bank of " + whole(bank_deg()) +
+                " degrees: at most " + whole(kMaxBank) + ", raise --wing or lower --speed");
+  }
+  if (wish_.wind && wish_.wind->speed_mps >= speed_mps()) {
+    throw Error("--wind: " + text_of(wish_.wind->speed_mps) + " m/s is not less than the speed, " +
+                text_of(speed_mps()) + " m/s: nothing is reached against it");
+  }
 }
 
 Box FirstRoute::volume(int attempt) const {
@@ -165,7 +193,8 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
     text += terrain_entry(tile, path_in(folder, tile.file));
   }
   // Zones with hours count if they are active while the flight may last.
-  const double horizon = std::ceil(3 * length_m() / speed_mps() + 600);
+  const double slowest = speed_mps() - (wish_.wind ? wish_.wind->speed_mps : 0);
+  const double horizon = std::ceil(3 * length_m() / slowest + 600);
   const std::vector<std::string> ids = zone_layers();
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const fs::path& file = wish_.avoid[i];
@@ -177,6 +206,9 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
 }
 
 std::string FirstRoute::vehicle() const {
+  const std::string climb = wish_.climb_mps ? ", climb_mps: " + text_of(*wish_.climb_mps) +
+                                                  ", sink_mps: " + text_of(*wish_.climb_mps)
+                                            : "";
   const std::string energy = wish_.battery_wh && wish_.power_w && !lines_
                                  ? ", energy: {capacity_wh: " + text_of(*wish_.battery_wh) +
                                        ", reserve: " + text_of(wish_.reserve) +
@@ -184,10 +216,10 @@ std::string FirstRoute::vehicle() const {
                                  : "";
   return (wish_.turn_radius_m
               ? "{radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
-                    ", bank_deg: " + text_of(kBank) + "}"
+                    ", bank_deg: " + text_of(bank_deg()) + "}"
               : "{radius_m: " + text_of(kCopterRadius) +
                     ", performance: arducopter, speed_mps: " + text_of(speed_mps())) +
-         energy + "}";
+         climb + energy + "}";
 }
 
 std::string FirstRoute::point(const WishedPoint& at) const {
@@ -221,6 +253,10 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
       environment + corridor_.frame_line() + (corridor_.frame_line().empty() ? "" : "\n");
   text += "volume: {min_m: " + corner(volume.min) + ", max_m: " + corner(volume.max) + "}\n" +
           "vehicle: " + vehicle() + "\n" + ends();
+  if (wish_.wind) {
+    text += "wind: {from_deg: " + text_of(wish_.wind->from_deg) +
+            ", speed_mps: " + text_of(wish_.wind->speed_mps) + "}\n";
+  }
   if (wish_.start_time) {
     text += "start_time: " + exact_json_text(*wish_.start_time) + "\n";
   }
@@ -313,10 +349,13 @@ std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,
   const Vec3 size = (volume.max - volume.min) / 1000;
   static constexpr const char* kWidth[] = {"a narrow corridor", "a wider corridor",
                                            "the widest corridor"};
+  const std::string wind = wish_.wind ? ", wind of " + text_of(wish_.wind->speed_mps) +
+                                            " m/s from " + text_of(wish_.wind->from_deg) + " deg"
+                                      : "";
   const std::string vehicle = wish_.turn_radius_m
                                   ? "wing with turns of " + whole(*wish_.turn_radius_m) +
-                                        " m or more, " + text_of(speed_mps()) + " m/s"
-                                  : "copter of 1 m radius, " + text_of(speed_mps()) + " m/s";
+                                        " m or more, " + text_of(speed_mps()) + " m/s" + wind
+                                  : "copter of 1 m radius, " + text_of(speed_mps()) + " m/s" + wind;
   return {"terrain: " + ground + "; frame: " + corridor_.frame_in_words(),
           "volume: " + with_digits(size.x(), 3) + " x " + with_digits(size.y(), 3) + " km, " +
               (corridor_.is_all(volume) ? "all of the model" : kWidth[kTry[attempt].width]) + ", " +

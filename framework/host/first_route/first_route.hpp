@@ -60,6 +60,8 @@ class FirstRoute {
   std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
   std::string heights_in_words() const;
   double speed_mps() const;
+  double bank_deg() const;
+  void expect_flyable() const;
 
   RouteWish wish_;
   WishedHeights heights_;

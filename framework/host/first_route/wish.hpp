@@ -18,6 +18,12 @@ struct WishedPoint {
   std::optional<double> above_ground_m;
 };
 
+/// A wind of one speed and direction.
+struct WishedWind {
+  double speed_mps = 0;
+  double from_deg = 0;  ///< clockwise from north
+};
+
 /// A route over an elevation model that is wished for without a scenario.
 struct RouteWish {
   std::vector<std::filesystem::path> terrain;  ///< models, or folders of them
@@ -27,10 +33,13 @@ struct RouteWish {
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
   std::optional<double> turn_radius_m;  ///< of an aeroplane; none: a copter
-  std::optional<double> battery_wh;     ///< with power_w
-  std::optional<double> power_w;        ///< mean power in flight
-  double reserve = 0.2;                 ///< share of the battery
-  std::optional<std::string> planner;   ///< none: chosen
+  std::optional<double> speed_mps;      ///< through the air; none: chosen
+  std::optional<double> climb_mps;      ///< greatest rates of climb and sink; none: an autopilot's
+  std::optional<WishedWind> wind;
+  std::optional<double> battery_wh;    ///< with power_w
+  std::optional<double> power_w;       ///< mean power in flight
+  double reserve = 0.2;                ///< share of the battery
+  std::optional<std::string> planner;  ///< none: chosen
   std::optional<std::string> start_time;
   std::optional<SurveyWish> survey;  ///< in place of a route to a goal
 };
