@@ -284,6 +284,21 @@ class CheckPlan(PlanCase):
             else:
                 self.assertIn("p:1: expected a parameter" if text else "p: contains no parameters", err)
 
+    def test_parameters_of_another_autopilot_are_not_taken(self):
+        items = [item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)]
+        options = ("mission.plan", "--terrain", TERRAIN, "--params", "p")
+        for text, other in (("1 1 MPC_XY_CRUISE 8 9\n", "PX4"), ("AIRSPEED_CRUISE = 22 # m/s\n", "ArduPilot plane")):
+            (self.folder / "p").write_text(text)
+            self.write(items)
+            out, _ = self.call(*options, code=1)
+            self.assertIn(f"the parameters are those of {other}, not of ArduPilot copter", out)
+            self.write(items, firmwareType=0, vehicleType=0)
+            out, _ = self.call(*options, code=1)
+            self.assertNotIn("ArduPilot copter", out)  # it cannot be one
+        (self.folder / "p").write_text("FRAME_CLASS 1 # of a quadrotor, say\nFENCE_MARGIN=3\n")
+        self.write(items)
+        self.call(*options, code=0)
+
     def test_models_may_be_several(self):
         self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
         (self.folder / "tiles").mkdir()

@@ -298,6 +298,11 @@ class Formats(unittest.TestCase):
                     continue  # behind the message
                 self.assertEqual(done.returncode, 3, f"{name} {cut} {done.stdout} {done.stderr}")
                 self.assertIn(name, done.stderr)
+        curved = whole["l.csv"].split(b"\n")
+        curved[2] = b",".join(b"20" if n == 4 else cell for n, cell in enumerate(curved[2].split(b",")))
+        path = self.file("curved.csv", b"\n".join(curved))
+        _, err = altiplan("check", "--route", path, "--scenario", scenario, code=3)
+        self.assertIn("how Litchi flies the curvesize '20' is not judged", err)
         waylines = zipfile.ZipFile(io.BytesIO(whole["w.kmz"])).read("wpmz/waylines.wpml")
         for old, new, words in (
                 (b">toPointAndStopWithDiscontinuityCurvature<", b">coordinateTurn<", "how DJI flies the waypointTurnMode"),
@@ -310,6 +315,15 @@ class Formats(unittest.TestCase):
             path = self.file("changed.kmz", archive.getvalue())
             _, err = altiplan("check", path, "--terrain", TERRAIN, code=3)
             self.assertIn(words, err)
+        template = zipfile.ZipFile(io.BytesIO(whole["w.kmz"])).read("wpmz/template.kml")
+        archive = io.BytesIO()
+        with zipfile.ZipFile(archive, "w") as changed:
+            changed.writestr("wpmz/template.kml", template.replace(
+                b"<wpml:takeOffRefPoint>", b"<wpml:takeOffRefPoint>x"))
+            changed.writestr("wpmz/waylines.wpml", waylines)
+        path = self.file("changed.kmz", archive.getvalue())
+        _, err = altiplan("check", path, "--terrain", TERRAIN, code=3)
+        self.assertIn("changed.kmz/template.kml:", err)
 
 
 unittest.main(argv=sys.argv[:1] + sys.argv[3:])

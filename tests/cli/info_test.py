@@ -50,6 +50,21 @@ class Info(unittest.TestCase):
         self.assertIn("city model", out)
         self.assertIn("1 prisms", out)
 
+    def test_names_may_be_in_capitals(self):
+        area = ("<kml><Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>8,46 8.1,46 8.1,46.1 8,46"
+                "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>")
+        self.assertIn("1 keep-out zone", self.info(self.write("AREA.KML", area)))
+        solid = ("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                 "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+        self.assertIn("4 triangles", self.info(self.write("ROCK.OBJ", solid)))
+
+    def test_a_table_of_litchi_is_a_mission(self):
+        table = self.write("litchi.csv", "latitude,longitude,altitude(m),altitudemode\n46,8,50,0\n46.1,8,60,0\n")
+        self.assertIn("2 items: 2 waypoints", self.info(table))
+        line = ("<kml><Placemark><LineString><altitudeMode>absolute</altitudeMode><coordinates>8,46,900 8.1,46,900"
+                "</coordinates></LineString></Placemark></kml>")
+        self.assertIn("2 items: 2 waypoints", self.info(self.write("waylines.wpml", line)))
+
     def test_an_elevation_model(self):
         out = self.info(TERRAIN)
         for said in (": elevation model\n", "403 x 344 posts", "236 to 1076 m, no voids",

@@ -110,6 +110,40 @@ class Zones(unittest.TestCase):
         self.assertEqual(failure.get("type"), "clearance")
         self.assertRegex(failure.text, r"value -\d.* m, limit \d+(\.5)? m, layer fence of the mission, zone hospital")
 
+    def test_airspace_is_read_as_that_of_a_first_route(self):
+        self.write("mission.plan", json.dumps(plan_of([[-84.30, 36.60, 1500], [-84.29, 36.60, 1500]])))
+
+        def square(west):
+            return [[36.59, west], [36.59, west + 0.05], [36.61, west + 0.05], [36.61, west]]
+        fence = plan_of([])
+        fence["geoFence"]["polygons"] = [{"version": 1, "inclusion": True, "polygon": square(-84.32)}]
+        check = ("check", "mission.plan", "--terrain", TERRAIN, "--airspace")
+        self.write("fence.plan", json.dumps(fence))
+        self.call(*check, "fence.plan")
+        fence["geoFence"]["polygons"].append({"version": 1, "inclusion": True, "polygon": square(-84.20)})
+        self.write("fence.plan", json.dumps(fence))
+        self.call(*check, "fence.plan", code=1)  # an autopilot stays in both
+        ring = [[lon, lat] for lat, lon in square(-84.32)]
+        for floor, code in ((1600, 0), (1400, 1)):
+            self.write("limits.geojson", json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": {"floor_m": floor, "ceiling_m": 1700},
+                 "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}}]}))
+            self.call(*check, "limits.geojson", code=code)
+
+    def test_airspace_without_an_area_is_refused(self):
+        points = [[-84.38, 36.48, 1500], [-84.20, 36.66, 1500]]
+        self.write("mission.plan", json.dumps(plan_of(points)))
+        prison = {"type": "Feature", "properties": {"name": "prison"},
+                  "geometry": {"type": "Point", "coordinates": [-84.29, 36.57]}}
+        for features, words in (([prison], "points and lines without a width: 'prison at -84.29, 36.57'"),
+                                ([{**prison, "geometry": None}], "1 features without an area skipped"),
+                                ([], "0 features without an area skipped")):
+            self.write("zones.geojson", json.dumps({"type": "FeatureCollection", "features": features}))
+            _, err = self.call("check", "mission.plan", "--terrain", TERRAIN, "--airspace", "zones.geojson",
+                               code=3)
+            self.assertIn("zones.geojson: contains no zone: ", err)
+            self.assertIn(words, err)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -248,6 +248,22 @@ TEST(Airspace, OpenAirHasUnitsTimesAndTypes) {
   EXPECT_EQ(upper("9 furlongs"), ZoneLimit{});
 }
 
+TEST(Airspace, SixtySecondsAreTheNextMinute) {
+  const auto outline = [](const std::string& corner) {
+    return read(openair("DP " + corner)).zones.at(0).volumes[0].polygon.outline;
+  };
+  const auto whole = outline("45:50:00 N 007:10:00 E");
+  for (const std::string corner : {"45:49:60 N 007:09:60.000 E", "45:49:60N 7:10 E"}) {
+    const auto rounded = outline(corner);
+    ASSERT_EQ(rounded.size(), whole.size()) << corner;
+    for (std::size_t n = 0; n < whole.size(); ++n) {
+      EXPECT_NEAR(rounded[n][0], whole[n][0], 1e-12) << corner;
+      EXPECT_NEAR(rounded[n][1], whole[n][1], 1e-12) << corner;
+    }
+  }
+  EXPECT_NE(refusal(openair("DP 45:49:60.5 N 007:10:00 E")), "");
+}
+
 /// Points of the arcs that are in the zone by any reckoning.
 TEST(Airspace, ChordsNeverCutIntoTheZone) {
   // A circle with a bite: its outer arc bulges out, the inner one in.

@@ -68,7 +68,7 @@ bool is_judged_for(const link::Vehicle& vehicle, const formats::MissionFile& mis
   }
   std::string judged;
   for (const formats::Autopilot& possible :
-       host::possible_autopilots(mission, gate.firmware, gate.airframe)) {
+       host::possible_autopilots(mission, gate.firmware, gate.airframe, gate.flight.parameters)) {
     // ArduPilot's VTOL may call itself a fixed wing.
     const bool is_plane = possible.airframe == formats::Airframe::vtol && !possible.is_px4() &&
                           autopilot->airframe == formats::Airframe::plane;

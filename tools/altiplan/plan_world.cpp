@@ -7,6 +7,7 @@
 
 #include "altiplan/formats/mission_commands.hpp"
 #include "host/first_route/tiles.hpp"
+#include "host/first_route/zones.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/result/result_json.hpp"
 
@@ -24,9 +25,13 @@ constexpr double kMargin = 1.1;
 /// The scenario that options describe, in messages.
 constexpr std::string_view kWorld = "the world of --terrain";
 
+std::filesystem::path absolute(const std::string& file) {
+  return std::filesystem::absolute(file).lexically_normal();
+}
+
 /// Quoted, absolute; JSON's strings are YAML's.
 std::string path_text(const std::string& file) {
-  return host::exact_json_text(std::filesystem::absolute(file).lexically_normal().string());
+  return host::exact_json_text(absolute(file).string());
 }
 
 std::string name_of(const std::string& file) {
@@ -107,7 +112,9 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
     const std::string hours = plan.start_time  // else zones count at all hours
                                   ? ", horizon_s: " + host::exact_json_text(seconds)
                                   : "";
-    add_zones(file, name_of(file), hours + (plan.has_permission ? ", ask: skip" : ""));
+    add_zones(file, name_of(file),
+              hours + host::zone_parameters(absolute(file), plan.start_time.has_value()) +
+                  (plan.has_permission ? ", ask: skip" : ""));
   }
   if (has_fence(mission)) {
     add_zones(plan.plan, "fence of the mission", ", keep_in: all");

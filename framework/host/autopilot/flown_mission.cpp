@@ -114,6 +114,9 @@ void Walker::walk() {
   std::size_t n = 0;
   std::size_t jumps = 0;  // since the last command of another kind
   bool ends = false;
+  if (const std::string other = parameters_.of_another(); !other.empty()) {
+    give_up(n, "the parameters are those of " + other + ", not of " + autopilot_.name());
+  }
   for (int steps = 0; n < commands_.size() && !ends; ++steps) {
     if (steps == kMaxSteps) {
       flight_.remark(Weight::not_judged, "not_judged", n, "the flight has too many steps");

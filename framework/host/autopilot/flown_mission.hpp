@@ -82,10 +82,11 @@ struct FlightOptions {
 FlownMission fly_mission(const formats::MissionFile& plan, formats::Autopilot autopilot,
                          const World& world, const FlightOptions& options);
 
-/// The autopilots that the file, or else the user, leaves open.
+/// The autopilots that the file, or else the user, leaves open: those alone whose parameters may be
+/// the given ones, unless these are of none of them.
 std::vector<formats::Autopilot> possible_autopilots(
     const formats::MissionFile& plan, const std::optional<formats::Firmware>& firmware,
-    const std::optional<formats::Airframe>& airframe);
+    const std::optional<formats::Airframe>& airframe, const ParameterFile& parameters);
 
 /// "item 3 (waypoint)" as ground stations number it, "line 5" where the file numbers nothing.
 std::string name_of_command(const formats::MissionCommand& command);

@@ -152,8 +152,9 @@ std::optional<double> value_in(const ParameterFile& file, const Row& row) {
 
 std::vector<std::string> words_of(const std::string& line) {
   std::vector<std::string> words;
-  for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r,", at)) != std::string::npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r,", at), line.size());
+  constexpr const char* kBetween = " \t\r,=";  // as ArduPilot reads them
+  for (std::size_t at = 0; (at = line.find_first_not_of(kBetween, at)) != std::string::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
     words.push_back(line.substr(at, end - at));
     at = end;
   }
@@ -173,16 +174,17 @@ ParameterFile read_parameters(const std::string& file) {
     const std::string line = text.substr(at, end - at);
     at = end + 1;
     ++number;
-    const std::vector<std::string> words = words_of(line);
-    if (words.empty() || words.front().front() == '#') {
+    std::vector<std::string> words = words_of(line);
+    words.erase(std::find_if(words.begin(), words.end(),
+                             [](const std::string& word) { return word.front() == '#'; }),
+                words.end());
+    if (words.empty()) {
       continue;
     }
     const bool is_of_qgc = words.size() >= 5;
     const std::size_t name = is_of_qgc ? 2 : 0;
     double value = 0;
-    const bool is_pair =
-        is_of_qgc || words.size() == 2 || (words.size() > 2 && words[2].front() == '#');
-    if (is_pair) {
+    if (is_of_qgc || words.size() == 2) {
       const std::string& word = words[name + 1];
       const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (error == std::errc() && rest == word.data() + word.size() && std::isfinite(value)) {
@@ -226,6 +228,27 @@ double Parameters::operator()(std::string_view name) const {
 
 bool Parameters::is_given(std::string_view name) const {
   return value_in(file_, row_of(name)).has_value();
+}
+
+std::string Parameters::of_another() const {
+  // PX4 has one set for all vehicles.
+  constexpr std::array<std::array<std::size_t, 2>, 3> kColumns{{{0, 0}, {1, 1}, {2, 3}}};
+  constexpr std::array kNames{"ArduPilot copter", "ArduPilot plane", "PX4"};
+  std::array<bool, 3> has{};
+  for (const Row& row : kRows) {
+    std::array<bool, 3> knows{};
+    for (std::size_t n = 0; n < knows.size(); ++n) {
+      knows[n] = std::isfinite(row.defaults[kColumns[n][0]]) ||
+                 std::isfinite(row.defaults[kColumns[n][1]]);
+    }
+    const bool is_one_s = std::count(knows.begin(), knows.end(), true) == 1;
+    if (is_one_s && (file_.contains(row.name) || file_.contains(row.old_name))) {
+      has[std::size_t(std::find(knows.begin(), knows.end(), true) - knows.begin())] = true;
+    }
+  }
+  const std::size_t own = autopilot_.is_px4() ? 2 : autopilot_.is_copter() ? 0 : 1;
+  const auto other = std::find(has.begin(), has.end(), true);
+  return has[own] || other == has.end() ? "" : kNames[std::size_t(other - has.begin())];
 }
 
 std::vector<Parameters::Used> Parameters::used() const {

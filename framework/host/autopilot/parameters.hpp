@@ -33,6 +33,9 @@ class Parameters {
     double value;
     bool is_given;  ///< by the file
   };
+  /// The autopilot whose parameters the file has, "" unless it is another: it has names that are
+  /// that one's alone, and none that are this one's alone.
+  std::string of_another() const;
   /// Sorted by name.
   std::vector<Used> used() const;
   formats::Autopilot autopilot() const { return autopilot_; }

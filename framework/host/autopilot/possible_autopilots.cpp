@@ -10,7 +10,8 @@ using formats::MissionCommand;
 
 std::vector<Autopilot> possible_autopilots(const formats::MissionFile& plan,
                                            const std::optional<Firmware>& firmware,
-                                           const std::optional<Airframe>& airframe) {
+                                           const std::optional<Airframe>& airframe,
+                                           const ParameterFile& parameters) {
   constexpr int kArduPilot = 3;
   constexpr int kPx4 = 12;
   std::vector<Firmware> firmwares{Firmware::ardupilot, Firmware::px4};
@@ -31,12 +32,16 @@ std::vector<Autopilot> possible_autopilots(const formats::MissionFile& plan,
     airframes = {Airframe::copter};
   }
   std::vector<Autopilot> all;
+  std::vector<Autopilot> of_parameters;
   for (const Firmware f : firmwares) {
     for (const Airframe a : airframes) {
       all.push_back({f, a});
+      if (Parameters(all.back(), parameters).of_another().empty()) {
+        of_parameters.push_back(all.back());
+      }
     }
   }
-  return all;
+  return of_parameters.empty() ? all : of_parameters;
 }
 
 std::string name_of_command(const MissionCommand& command) {

@@ -2,6 +2,7 @@
 #include "host/first_route/file_info.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 
@@ -44,9 +45,11 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 /// The layer in a world of its own.
 std::unique_ptr<Environment> build(const char* plugin, const fs::path& file,
-                                   const std::string& parameters, Registry& registry) {
+                                   const std::string& parameters, Registry& registry,
+                                   const Frame& frame = {}) {
   const World empty;
   Site site;
+  site.frame = frame;
   site.before = &empty;
   // The name has no folder that the file would be relative to.
   const Value value =
@@ -124,8 +127,16 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
 FileInfo zones_info(const fs::path& file, const std::optional<formats::Airspace>& airspace,
                     Registry& registry) {
   const std::string parameters = zone_parameters(file, false);
-  const auto layer = build("zones", file, parameters, registry);
-  FileInfo info{airspace ? "published airspace" : "zones", layer->info().notes, {}};
+  std::unique_ptr<Environment> layer;
+  FileInfo info{airspace ? "published airspace" : "zones", {}, {}};
+  try {
+    layer = build("zones", file, parameters, registry);
+    info.facts = layer->info().notes;
+  } catch (const Error& error) {
+    // Zones all over the Earth are read in any frame, and have none of their own.
+    layer = build("zones", file, parameters, registry, Frame::local({0, 0}));
+    info.facts = {error.what()};
+  }
   if (airspace) {
     const std::vector<std::string> more = facts_of(*airspace);
     info.facts.insert(info.facts.end(), more.begin(), more.end());
@@ -180,8 +191,9 @@ std::optional<FileInfo> text_info(const fs::path& file, Registry& registry) {
   if (const auto airspace = formats::read_airspace(file.string(), text)) {
     return zones_info(file, airspace, registry);
   }
-  const std::string extension = file.extension();
-  if (extension != ".geojson" && (is_mission_name(file.string()) || extension == ".mission")) {
+  const std::string extension = formats::ending_of(file.string());
+  if (extension != ".geojson" &&
+      (holds_mission(file.string(), text) || extension == ".mission" || extension == ".wpml")) {
     return info_of(read_mission_file(file.string(), text), file.string());
   }
   if (extension == ".geojson" || extension == ".json") {
@@ -195,8 +207,13 @@ FileInfo info_of(const fs::path& file, const std::string& crs, Registry& registr
   if (const std::string why = formats::why_unreadable(file.string()); !why.empty()) {
     throw Error(file.string() + ": " + why);
   }
+  std::string name = file.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char letter) { return char(std::tolower(letter)); });
+  const bool is_litchi_table =
+      ends_with(name, ".csv") && holds_mission(file.string(), formats::read_file(file.string()));
   for (const LayerKind& kind : kLayers) {
-    if (ends_with(file.string(), kind.ending)) {
+    if (!is_litchi_table && ends_with(name, kind.ending)) {
       return layer_info(kind, file, registry);
     }
   }

@@ -37,6 +37,12 @@ std::string zone_parameters(const std::filesystem::path& file, bool has_start_ti
     return mission.format == formats::MissionFile::Format::kml ? "" : ", keep_in: all";
   }
   const formats::GeoJson json = read_features(file, text);
+  if (json.features.empty() && json.surroundings.empty()) {
+    throw Error(file.string() + ": contains no zone: " + json.skipped_text() +
+                (json.places.empty()
+                     ? ""
+                     : "; points and lines without a width: " + formats::names_text(json.places)));
+  }
   std::string parameters;
   for (const auto& [key, property, is_time] : {std::tuple("floor_property", "floor_m", false),
                                                {"ceiling_property", "ceiling_m", false},

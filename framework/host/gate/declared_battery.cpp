@@ -67,7 +67,7 @@ void take_battery(const Vehicle& vehicle, const formats::MissionFile& plan, Gate
     battery.least_w = battery.power_w = still_w;
   } else if (!plan.commands.empty() || options.firmware || options.airframe) {
     for (const formats::Autopilot autopilot :
-         possible_autopilots(plan, options.firmware, options.airframe)) {
+         possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters)) {
       if (!autopilot.is_copter()) {
         options.battery_problem =
             "the battery: the power of " + autopilot.name() +

@@ -95,7 +95,8 @@ class Gate {
         is_drawn_(plan.commands.empty() && !options.firmware && !options.airframe) {
     request_.world = std::make_shared<const World>(world.truth);
     if (!is_drawn_) {
-      autopilots_ = possible_autopilots(plan, options.firmware, options.airframe);
+      autopilots_ =
+          possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
     }
   }
 

@@ -28,7 +28,8 @@ std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats
                                           const Mission& world, const GateOptions& options) {
   constexpr int kStep = 20;  // metres
   constexpr int kMost = 600;
-  const auto autopilots = possible_autopilots(plan, options.firmware, options.airframe);
+  const auto autopilots =
+      possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
   if (plan.commands.empty() || autopilots.size() != 1) {
     return std::nullopt;
   }

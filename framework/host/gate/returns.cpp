@@ -373,7 +373,7 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
     report.unjudged.emplace_back("the file holds no commands: what flies it is not known");
   } else {
     const std::vector<formats::Autopilot> autopilots =
-        possible_autopilots(plan, options.firmware, options.airframe);
+        possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
     for (const formats::Autopilot& autopilot : autopilots) {
       const FailsafeReturns returns(plan, autopilot, world.truth, options.flight);
       const double longest_s = 2 * returns.mission().time.max_s + 600;

@@ -134,18 +134,17 @@ formats::MissionFile read_kmz(const std::string& file, const std::string& text) 
   if (!waylines && !kml) {
     throw Error(file + ": the archive holds neither a .kml nor a waylines.wpml");
   }
-  const auto read = [&](const std::string& content) {
-    formats::MissionFile mission =
-        formats::read_mission(file + (waylines ? "/waylines.wpml" : "/doc.kml"), content);
+  const auto read = [&](const std::string& content, const char* entry) {
+    formats::MissionFile mission = formats::read_mission(file + entry, content);
     mission.format = formats::MissionFile::Format::other;
     return mission;
   };
   if (!waylines) {
-    return read(*kml);
+    return read(*kml, "/doc.kml");
   }
-  formats::MissionFile mission = read(*waylines);
+  formats::MissionFile mission = read(*waylines, "/waylines.wpml");
   if (kml) {  // the template, where the place of take-off is
-    mission.home = read(*kml).home;
+    mission.home = read(*kml, "/template.kml").home;
   }
   return mission;
 }

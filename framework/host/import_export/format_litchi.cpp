@@ -82,7 +82,7 @@ MissionItem litchi_item(const std::vector<std::string_view>& head,
       litchi_number(cells[column(head, is_metric ? "altitude(m)" : "altitude(ft)")],
                     "an altitude") *
       (is_metric ? 1 : kFootInMetres);
-  if (cells[column(head, "altitudemode")] == "1") {
+  if (litchi_number(cells[column(head, "altitudemode")], "an altitudemode") != 0) {
     throw Error(
         "altitudes above the ground, by Litchi's own model, are not read: expected the "
         "altitudemode 0");
@@ -91,6 +91,17 @@ MissionItem litchi_item(const std::vector<std::string_view>& head,
           {lon, lat, height, formats::AltitudeFrame::home},
           0,
           "line " + std::to_string(line)};
+}
+
+/// Whether a curve is flown depends on the path mode, which the file does not hold.
+std::string curve_problem(const std::vector<std::string_view>& head,
+                          const std::vector<std::string_view>& cells) {
+  for (std::size_t n = 0; n < std::min(head.size(), cells.size()); ++n) {
+    if (head[n].starts_with("curvesize(") && litchi_number(cells[n], "a curvesize") != 0) {
+      return "how Litchi flies the curvesize " + excerpt(cells[n]) + " is not judged, only 0";
+    }
+  }
+  return "";
 }
 }  // namespace
 
@@ -132,7 +143,11 @@ formats::MissionFile read_litchi(const std::string& file, const std::string& tex
         head = split(content);
         continue;
       }
-      mission.items.push_back(litchi_item(head, split(content), line));
+      const std::vector<std::string_view> cells = split(content);
+      mission.items.push_back(litchi_item(head, cells, line));
+      if (mission.route_problem.empty()) {
+        mission.route_problem = curve_problem(head, cells);
+      }
     }
   } catch (const Error& error) {
     throw Error(file + ":" + std::to_string(line) + ": " + error.what());

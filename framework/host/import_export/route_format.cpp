@@ -2,7 +2,6 @@
 #include "host/import_export/route_format.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "altiplan/error.hpp"
 #include "altiplan/formats/input_file.hpp"
@@ -103,10 +102,6 @@ std::vector<RouteFormat> table() {
            .read_local = read_route_csv}};
 }
 
-std::string extension_of(const std::string& file) {
-  return std::filesystem::path(file).extension().string();
-}
-
 /// The format that the content tells, none if only the file's name can.
 const RouteFormat* recognised(std::string_view text) {
   for (const RouteFormat& format : route_formats()) {
@@ -133,7 +128,7 @@ const RouteFormat& format_named(std::string_view name) {
 }
 
 const RouteFormat* format_by_extension(const std::string& file) {
-  const std::string extension = extension_of(file);
+  const std::string extension = formats::ending_of(file);
   // Of those that share one, the last is the general one.
   const auto& all = route_formats();
   const auto found = std::find_if(all.rbegin(), all.rend(), [&](const RouteFormat& format) {
@@ -190,6 +185,11 @@ std::optional<LocalRoute> read_local_route(const std::string& file, const std::s
 
 bool is_mission_name(const std::string& file) {
   const RouteFormat* format = format_by_extension(file);
-  return (format != nullptr && !format->is_local()) || extension_of(file) == ".txt";
+  return (format != nullptr && !format->is_local()) || formats::ending_of(file) == ".txt";
+}
+
+bool holds_mission(const std::string& file, std::string_view text) {
+  const RouteFormat* format = recognised(text);
+  return (format != nullptr && !format->is_local()) || is_mission_name(file);
 }
 }  // namespace altiplan::host

@@ -59,4 +59,6 @@ formats::MissionFile read_mission_file(const std::string& file);
 std::optional<LocalRoute> read_local_route(const std::string& file, const std::string& text);
 /// True if the file's extension is one of missions alone.
 bool is_mission_name(const std::string& file);
+/// Likewise, or if its content tells, as that of Litchi's tables does.
+bool holds_mission(const std::string& file, std::string_view text);
 }  // namespace altiplan::host

@@ -141,6 +141,8 @@ void overlap(Ring& ring, const Extent& extent) {
   }
 }
 
+constexpr double kReach = 20;  // degrees about a frame's origin
+
 /// The surroundings of a frame's origin in longitude and latitude.
 class Surroundings {
  public:
@@ -154,6 +156,12 @@ class Surroundings {
     const double width = std::min(east, kHalfTurn - 1e-9);
     low_[0] = middle_[0] - width;
     high_[0] = middle_[0] + width;
+  }
+
+  bool hold(const Point2& p) const {
+    return p[1] >= low_[1] && p[1] <= high_[1] &&
+           (holds_pole_ ||
+            std::abs(longitude_near(p[0], middle_[0]) - middle_[0]) <= high_[0] - middle_[0]);
   }
 
   /// The part of a polygon, moved by whole turns of the Earth, in the frame.
@@ -358,7 +366,6 @@ std::vector<Polygon> readings(Polygon polygon, bool keeps_in) {
 }  // namespace
 
 std::vector<Polygon> in_frame(const Polygon& polygon, const Frame& frame, bool keeps_in) {
-  constexpr double kReach = 20;
   constexpr double kLeast = 1;
   for (double reach = kReach;; reach /= 2) {
     try {
@@ -374,6 +381,12 @@ std::vector<Polygon> in_frame(const Polygon& polygon, const Frame& frame, bool k
       }
     }
   }
+}
+
+bool are_in_frame(const std::vector<Point2>& positions, const Frame& frame) {
+  const Surroundings surroundings(frame, kReach, false);
+  return std::all_of(positions.begin(), positions.end(),
+                     [&](const Point2& p) { return surroundings.hold(p); });
 }
 
 Frame frame_around(const std::vector<Point2>& positions) {

@@ -7,6 +7,7 @@
 #include <ext/stdio_filebuf.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -130,6 +131,13 @@ InputFile::InputFile(const std::string& file) : std::istream(nullptr) {
 }
 
 InputFile::~InputFile() = default;
+
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return char(std::tolower(letter)); });
+  return ending;
+}
 
 std::string read_file(const std::string& file, std::uintmax_t max_bytes) {
   const Descriptor opened = open_or_throw(file);

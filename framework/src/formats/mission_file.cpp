@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <utility>
 
 #include "altiplan/formats/earth_polygon.hpp"
@@ -240,7 +239,7 @@ void CommandList::finish() {
 }
 
 bool is_mission_file(const std::string& file) {
-  const std::string ending = std::filesystem::path(file).extension().string();
+  const std::string ending = ending_of(file);
   return ending == ".plan" || ending == ".waypoints" || ending == ".txt" || ending == ".kml";
 }
 

@@ -44,13 +44,13 @@ class Scan {
   std::string_view text_;
 };
 
-/// "39:29.7 N" or "45:37:56N", degrees.
+/// "39:29.7 N" or "45:37:56N", degrees. Programs that round write 60 minutes or seconds.
 inline std::optional<double> angle(Scan& scan, char positive, char negative) {
   double degrees = 0;
   double scale = 1;
   do {
     const auto part = scan.number();
-    if (!part || *part < 0 || (scale < 1 && *part >= 60)) {
+    if (!part || *part < 0 || (scale < 1 && *part > 60)) {
       return std::nullopt;
     }
     degrees += *part * scale;

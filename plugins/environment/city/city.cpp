@@ -2,9 +2,9 @@
 // Cities: generated from a seed (paper 003, section 4), or read from footprints, CityJSON or the
 // colliders of a simulator.
 #include <algorithm>
-#include <filesystem>
 
 #include "altiplan/environment.hpp"
+#include "altiplan/formats/input_file.hpp"
 #include "altiplan/kit/layers/cell_layer.hpp"
 #include "altiplan/plugin.hpp"
 #include "buildings.hpp"
@@ -126,10 +126,10 @@ class City final : public Environment {
 
   void read(const Params& params, const Site& site) {
     const std::string& file = params.file->text;
-    Buildings buildings =
-        std::filesystem::path(file).extension() == ".csv" ? read_colliders(file, site)
-        : is_city_json(file) ? read_city_json(file, params.origin_m, site)
-                             : read_footprints(file, params.heights, params.base_m, site);
+    Buildings buildings = formats::ending_of(file) == ".csv" ? read_colliders(file, site)
+                          : is_city_json(file)
+                              ? read_city_json(file, params.origin_m, site)
+                              : read_footprints(file, params.heights, params.base_m, site);
     std::vector<Shape> shapes;
     for (Building& building : buildings.list) {
       shapes.push_back(building.shape);

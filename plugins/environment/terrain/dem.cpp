@@ -64,7 +64,7 @@ std::vector<fs::path> files_of(const Params& params) {
 /// Larger files are read from the disk, so that a part of one costs no more than that part; but not
 /// grids of text, of which GDAL reads all that comes before that part.
 bool is_small(const std::vector<fs::path>& files) {
-  if (files.front().extension() == ".asc") {
+  if (gdal::is_text_grid(files.front())) {
     return true;
   }
   constexpr std::uintmax_t kMax = 16'000'000;
@@ -100,7 +100,7 @@ gdal::Dataset open(const Params& params, const std::vector<fs::path>& files) {
   const char* const as_reals[] = {"DATATYPE=Float32", nullptr};
   gdal::Dataset dataset(
       api().GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, drivers,
-                       files.front().extension() == ".asc" ? as_reals : nullptr, nullptr),
+                       gdal::is_text_grid(files.front()) ? as_reals : nullptr, nullptr),
       std::move(close));
   if (!dataset) {
     refuse(params,
@@ -255,6 +255,12 @@ double metres_per_unit(const Params& params, const Dem& dem) {
 }
 
 void read_meaning(const Params& params, Dem& dem) {
+  if ((api().GDALGetMaskFlags(dem.band) & (GMF_ALL_VALID | GMF_NODATA)) == 0) {
+    refuse(
+        params,
+        "marks posts without a height by a mask, which is not read: expected a number that marks "
+        "them (nodata)");
+  }
   int has_nodata = 0;
   int has_scale = 0;
   int has_offset = 0;

@@ -38,6 +38,7 @@ struct Api {
   X(GDALGetRasterDataType)              \
   X(GDALDataTypeIsComplex)              \
   X(GDALGetRasterNoDataValue)           \
+  X(GDALGetMaskFlags)                   \
   X(GDALGetRasterUnitType)              \
   X(GDALGetRasterScale)                 \
   X(GDALGetRasterOffset)                \

@@ -2,6 +2,7 @@
 #include "memory_files.hpp"
 
 #include <atomic>
+#include <cctype>
 #include <cstdio>
 
 #include "altiplan/formats/input_file.hpp"
@@ -12,6 +13,9 @@ namespace {
 
 constexpr std::string_view kFolder = "/vsimem/altiplan_";
 constexpr std::size_t kDigits = 8;
+constexpr std::size_t kLongestWord = 10;  // of a grid's first line
+
+int byte_of(char c) { return static_cast<unsigned char>(c); }
 
 std::string new_prefix() {
   static std::atomic<unsigned> made = 0;
@@ -32,10 +36,21 @@ void indent_first_nan(std::string& grid) {
 }
 }  // namespace
 
+bool is_text_grid(const std::filesystem::path& file) {
+  std::string word;
+  altiplan::formats::InputFile stream(file.string());
+  for (char c = 0; word.size() < kLongestWord && stream.get(c) && std::isalpha(byte_of(c)) != 0;) {
+    word += char(std::tolower(byte_of(c)));
+  }
+  return word == "ncols" || word == "nrows" || word == "xllcorner" || word == "yllcorner" ||
+         word == "xllcenter" || word == "yllcenter" || word == "dx" || word == "dy" ||
+         word == "cellsize";
+}
+
 MemoryFiles::MemoryFiles(const std::vector<std::filesystem::path>& files) : prefix_(new_prefix()) {
   for (const std::filesystem::path& file : files) {
     contents_.push_back(altiplan::formats::read_file(file.string()));
-    if (file.extension() == ".asc") {
+    if (is_text_grid(file)) {
       indent_first_nan(contents_.back());
     }
   }

@@ -26,6 +26,9 @@ class MemoryFiles {
   std::vector<std::string> contents_;
 };
 
+/// True for an ESRI ASCII grid, whatever its name: GDAL too goes by the first word.
+bool is_text_grid(const std::filesystem::path& file);
+
 /// A GDAL message with the files' own names.
 std::string with_own_names(std::string message);
 }  // namespace gdal

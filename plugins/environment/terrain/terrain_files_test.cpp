@@ -122,6 +122,10 @@ TEST_F(MadeFiles, VoidsFollowTheRule) {
 TEST_F(MadeFiles, WhatIsNoNumberIsAVoidAmongWholeNumbersToo) {
   const auto file = grid("10 10 10 10 10\n10 nan 10 10 10\n10 10 10 10 10\n10 10 10 10 10\n");
   EXPECT_SAYS(refusal(file), "1 of 20 posts");
+  for (const char* name : {"MADE.ASC", "other.grd", "other"}) {
+    std::filesystem::copy_file(file, folder_ / name);
+    EXPECT_SAYS(refusal(folder_ / name, "crs: EPSG:32632"), "1 of 20 posts");
+  }
 }
 
 TEST_F(MadeFiles, AGridMayBeginWithAVoid) {

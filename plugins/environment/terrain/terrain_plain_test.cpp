@@ -140,6 +140,20 @@ TEST_F(PlainModels, SidecarsAreLeftToGdal) {
   expect_ending(with_sidecar(write("S23W068.hgt", srtm())), "", kWith);
 }
 
+TEST_F(PlainModels, MasksAreNotTakenForHeights) {
+  for (const char* inside : {"YES", "NO"}) {
+    const fs::path file =
+        translated(std::string("masked_") + inside + ".tif",
+                   std::string("--config GDAL_TIFF_INTERNAL_MASK ") + inside + " -mask 1");
+    if (file.empty()) {
+      GTEST_SKIP() << "no gdal_translate (Debian: gdal-bin)";
+    }
+    EXPECT_SAYS(refusal(file),
+                file.filename().string() + ": marks posts without a height by a mask");
+    EXPECT_SAYS(refusal(file, "voids: neighbours"), "by a mask");
+  }
+}
+
 TEST_F(PlainModels, DamagedOnesAreRefusedAsByGdal) {
   std::ifstream whole(testing::configs() / "data/jacksboro_fault.tif", std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(whole), {}};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 
 #include "altiplan/formats/earth_polygon.hpp"
@@ -194,6 +195,14 @@ void PublishedRules::describe(Fields& f) {
       .unit("hPa")
       .range(850, 1100)
       .doc("air pressure at sea level, for limits that are flight levels");
+}
+
+std::vector<formats::Point2> corners_in_use(const formats::Airspace& airspace,
+                                            const PublishedRules& rules) {
+  std::vector<Zone> used;
+  std::copy_if(airspace.zones.begin(), airspace.zones.end(), std::back_inserter(used),
+               [&](const Zone& zone) { return use_of(zone, rules) != Use::skip; });
+  return formats::corners_of(used.empty() ? airspace.zones : used);
 }
 
 Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,

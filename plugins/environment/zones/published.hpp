@@ -34,6 +34,10 @@ struct Published {
   std::size_t two_readings = 0;  ///< polygons, see formats::has_two_readings
 };
 
+/// Corners of the zones that the rules do not skip; of all where they skip all.
+std::vector<formats::Point2> corners_in_use(const formats::Airspace& airspace,
+                                            const PublishedRules& rules);
+
 /// The zones that are closed at some time of the flight. The site has a frame with a position.
 Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,
                           const Site& site, double horizon_s, Clip* clip);

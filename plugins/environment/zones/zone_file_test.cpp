@@ -285,6 +285,34 @@ TEST_F(ZoneFile, AFileFixesTheFrameOfAWorldWithoutOne) {
   EXPECT_NEAR(std::hypot(corner[0], corner[1]), 0, 1e-6);
 }
 
+TEST_F(ZoneFile, ZonesAllOverTheEarthHaveNoFrameOfTheirOwn) {
+  Site nowhere;
+  nowhere.before = &kNothing;
+  const std::string far = collection({feature("A", 25.0, "{}"), feature("B", 165.0, "{}")});
+  const std::string said = refusal("far.geojson", far, "", nowhere);
+  EXPECT_NE(said.find("far.geojson: its zones lie farther apart than a frame"), std::string::npos)
+      << said;
+  EXPECT_LT(zones("far.geojson", far)->clearance(at(25.05, 60.05, 10)), 0);
+  // What only informs needs no place in the frame.
+  const auto zone = [](const std::string& id, const std::string& restriction,
+                       const std::string& projection) {
+    return R"({"identifier": ")" + id + R"(", "restriction": ")" + restriction +
+           R"(", "applicability": [{"permanent": "YES"}], "geometry": [{"uomDimensions": "M",
+           "lowerLimit": 0, "lowerVerticalReference": "AGL", "upperLimit": 99999,
+           "upperVerticalReference": "AMSL", "horizontalProjection": )" +
+           projection + "}]}";
+  };
+  const std::string world = R"({"type": "Polygon", "coordinates":
+      [[[-180, -90], [180, -90], [180, 90], [-180, 90], [-180, -90]]]})";
+  const std::string circle = R"({"type": "Circle", "center": [25.05, 60.05], "radius": 3000})";
+  const auto layer = zones("w.json",
+                           R"({"features": [)" + zone("W", "NO_RESTRICTION", world) + "," +
+                               zone("P", "PROHIBITED", circle) + "]}",
+                           "", nowhere);
+  const auto [x, y] = layer->info().frame.value().to_local(25.05, 60.05);
+  EXPECT_LT(layer->clearance({x, y, 10}), 0);
+}
+
 TEST_F(ZoneFile, ClipDropsAndCutsWithoutChangingWhatIsInside) {
   const Vec3 corner = at(25.25, 60.05, 0);
   const Site site = site_of({{0, 0, 0}, {corner.x(), corner.y(), 500}});

@@ -229,12 +229,30 @@ class Zones final : public Environment {
       return parts;
     }
 
+    /// Holds all of the file's zones: what lies beyond a frame's surroundings would be open.
+    static Frame own_frame(const std::string& name, const FileZones& file,
+                           const PublishedRules& rules) {
+      std::vector<Point2> corners = corners_of(file);
+      Frame own = formats::frame_around(corners);
+      if (file.airspace && !formats::are_in_frame(corners, own)) {
+        corners = corners_in_use(*file.airspace, rules);
+        own = formats::frame_around(corners);
+      }
+      if (!formats::are_in_frame(corners, own)) {
+        throw Error(name +
+                    ": its zones lie farther apart than a frame of their own holds (20 degrees): "
+                    "expected the scenario's frame: {origin_lonlat: [lon, lat]}, or a layer with a "
+                    "position (terrain) before this one");
+      }
+      return own;
+    }
+
     void read_file(const Params& params) {
       const std::string& name = params.file->text;
       FileZones file = read_zone_file(name, params.rules);
       notes.insert(notes.end(), file.notes.begin(), file.notes.end());
       if (!site.frame.has_position() && (file.airspace || !file.zones.empty())) {
-        site.frame = formats::frame_around(corners_of(file));
+        site.frame = own_frame(name, file, params.published);
         frame = site.frame;
       }
       std::optional<Clip> clip;

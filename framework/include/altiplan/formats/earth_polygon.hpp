@@ -34,6 +34,9 @@ ALTIPLAN_API bool has_two_readings(const Polygon& polygon);
 ALTIPLAN_API std::vector<Polygon> in_frame(const Polygon& polygon, const Frame& frame,
                                            bool keeps_in = false);
 
+/// True if all positions lie in the frame's surroundings: in_frame leaves nothing out between them.
+ALTIPLAN_API bool are_in_frame(const std::vector<Point2>& positions, const Frame& frame);
+
 /// A frame for positions, one or more, that no other frame holds: true about their middle, its
 /// origin at their south-west.
 ALTIPLAN_API Frame frame_around(const std::vector<Point2>& positions);

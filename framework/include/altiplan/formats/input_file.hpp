@@ -42,6 +42,9 @@ class ALTIPLAN_API InputFile : public std::istream {
   std::unique_ptr<std::streambuf> buffer_;
 };
 
+/// The name's extension in small letters, ".kml" of AREA.KML.
+ALTIPLAN_API std::string ending_of(const std::string& file);
+
 /// Content of the file; throws InputError if it is not a regular file, cannot be read, or is
 /// larger.
 ALTIPLAN_API std::string read_file(const std::string& file, std::uintmax_t max_bytes = 64'000'000);
