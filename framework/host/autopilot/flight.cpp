@@ -102,6 +102,7 @@ double Flight::grid_ground(const Eigen::Vector2d& at) const {
 
 void Flight::add_strip(const Vec3& from, double from_high, const Vec3& to, double to_high,
                        double reach) {
+  ++mission_.strips;
   if (repeats < 2) {
     mission_.parts.back().strips.push_back({from, to, from_high, to_high, reach});
   }

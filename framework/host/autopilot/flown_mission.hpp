@@ -68,6 +68,7 @@ struct FlownMission {
   std::vector<Remark> remarks;
   TimeSpan time;
   std::vector<Parameters::Used> parameters;
+  std::size_t strips = 0;  ///< that were made, those of rounds that are not kept too
 };
 
 /// What a flight depends on, besides the mission.

@@ -104,8 +104,8 @@ bool Cures::is_valid(const std::vector<Cure>& changes, std::size_t before, std::
   };
   try {
     for (const FlownMission& flown : fly_(plan)) {
+      work_ += (double(flown.parts.size()) + double(flown.strips) / 2) / 2;  // to fly it
       for (const FlownPart& part : flown.parts) {
-        work_ += 0.5 + double(part.strips.size()) / 4;  // to fly it
         if (is_concerned(part)) {
           work_ += double(part.strips.size());
           if (!judge_.is_valid(part)) {
