@@ -4,10 +4,12 @@
 // NOLINTNEXTLINE(readability-identifier-naming): of Boost, whose own headers include such
 #define BOOST_ALLOW_DEPRECATED_HEADERS
 
+#include <algorithm>
 #include <boost/geometry/algorithms/area.hpp>
 #include <boost/geometry/algorithms/buffer.hpp>
 #include <boost/geometry/algorithms/correct.hpp>
 #include <boost/geometry/algorithms/difference.hpp>
+#include <boost/geometry/algorithms/intersection.hpp>
 #include <boost/geometry/geometries/multi_polygon.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
@@ -65,5 +67,13 @@ std::vector<formats::Polygon> clear_of_islands(const formats::Polygon& area, dou
     }
   }
   return parts;
+}
+
+double shared(const formats::Ring& one, const formats::Ring& other) {
+  const PlanePolygon a = with_outline(one);
+  const PlanePolygon b = with_outline(other);
+  Polygons common;
+  bg::intersection(a, b, common);
+  return bg::area(common) / std::min(bg::area(a), bg::area(b));
 }
 }  // namespace altiplan::cover

@@ -10,71 +10,28 @@
 #include "altiplan/request.hpp"
 #include "altiplan/task.hpp"
 #include "altiplan/world.hpp"
-#include "clearance.hpp"
+#include "areas.hpp"
 #include "flights.hpp"
+#include "given.hpp"
+#include "sweep.hpp"
 
 namespace altiplan::cover {
 namespace {
 
-struct Params {
-  formats::Ring outline_m{{0, 0}, {100, 0}, {100, 100}, {0, 100}};
-  std::vector<formats::Ring> holes_m;
-  double spacing_m = 3;
-  bool closed = true;
-  std::optional<double> capacity_s;
-  double height_m = 0;
-  std::optional<double> above_ground_m;
-  double tolerance_m = 2;
-  double clearance_m = 0;
-  int attempts = 3;
-
-  void describe(Fields& f) {
-    f("outline_m", outline_m).unit("m").min_items(3).doc("corners [x, y], in either sense");
-    f("holes_m", holes_m).unit("m").doc("islands, which are neither covered nor crossed");
-    f("spacing_m", spacing_m)
-        .unit("m")
-        .greater_than(0)
-        .doc("distance of lines: each covers half of it to both sides, and around its ends");
-    f("closed", closed).doc("true: without a goal the tour ends where it began");
-    f("capacity_s", capacity_s)
-        .unit("s")
-        .greater_than(0)
-        .doc("longest flight of a closed tour: several begin and end at one place; default: any");
-    f.check(closed || !capacity_s, "capacity_s is for a closed tour");
-    f("height_m", height_m)
-        .unit("m")
-        .doc("height of the passes above sea level; with level_flight_at_m that");
-    f("above_ground_m", above_ground_m)
-        .unit("m")
-        .greater_than(0)
-        .doc("height of the passes and joins above the ground instead");
-    f("tolerance_m", tolerance_m)
-        .unit("m")
-        .greater_than(0)
-        .doc("with above_ground_m: how far the height may be off it");
-    f("clearance_m", clearance_m)
-        .unit("m")
-        .at_least(0)
-        .doc("distance of the tour from islands, within which nothing is covered either");
-    f("attempts", attempts).range(1, 1000).doc("patterns of lines that are tried");
-  }
-};
-
 /// Share of the area that may stay uncovered, as slivers beside slanted edges.
 constexpr double kUncovered = 9e-5;
 
-Ring2 points_of(const formats::Ring& ring) {
-  Ring2 points;
-  for (const formats::Point2& p : formats::without_repeats(ring)) {
-    points.emplace_back(p[0], p[1]);
-  }
-  return points;
-}
+Point2 flat(const Vec3& p) { return {p.x(), p.y()}; }
 
 class Cover final : public Task {
  public:
-  Cover(const Params& params, const Site& site)
-      : params_(params), area_(area_of(params)), height_m_(params.height_m) {
+  Cover(const Params& params, const Site& site) : params_(params), height_m_(params.height_m) {
+    const std::vector<Given> given = given_areas(params);
+    for (const Given& area : given) {
+      areas_.push_back(area_of(area, params.clearance_m));
+      names_.push_back(area.name);
+    }
+    expect_apart(given);
     if (params.above_ground_m) {
       world_ = *site.before;
     }
@@ -85,31 +42,6 @@ class Cover final : public Task {
   }
 
  private:
-  static Area area_of(const Params& params) {
-    const std::string problem = formats::polygon_problem({params.outline_m, params.holes_m});
-    if (!problem.empty()) {
-      const bool is_outline = !formats::polygon_problem({params.outline_m, {}}).empty();
-      throw ParameterError(is_outline ? "outline_m" : "holes_m", "the area: " + problem);
-    }
-    formats::Polygon area{params.outline_m, params.holes_m};
-    if (params.clearance_m > 0 && !area.holes.empty()) {
-      const std::vector<formats::Polygon> parts = clear_of_islands(area, params.clearance_m);
-      if (parts.size() != 1) {
-        throw ParameterError(
-            "clearance_m", parts.empty()
-                               ? "the islands leave nothing to cover"
-                               : "the islands and their clearance cut the area into " +
-                                     std::to_string(parts.size()) + " parts: cover each by itself");
-      }
-      area = parts.front();
-    }
-    std::vector<Ring2> islands;
-    for (const formats::Ring& hole : area.holes) {
-      islands.push_back(points_of(hole));
-    }
-    return {points_of(area.outline), std::move(islands)};
-  }
-
   Box do_bounds() const override {
     double low = height_m_;
     double high = height_m_;
@@ -117,69 +49,84 @@ class Cover final : public Task {
       low = -1000;
       high = 10'000 + *params_.above_ground_m;
     }
-    return {{area_.min().x(), area_.min().y(), low}, {area_.max().x(), area_.max().y(), high}};
+    Box box = Box::empty();
+    for (const Area& area : areas_) {
+      box = box.with({area.min().x(), area.min().y(), low});
+      box = box.with({area.max().x(), area.max().y(), high});
+    }
+    return box;
   }
 
   std::shared_ptr<const Environment> do_obstacles() const override {
-    if (params_.holes_m.empty()) {
-      return nullptr;
-    }
     std::vector<Shape> islands;
-    for (const formats::Ring& hole : params_.holes_m) {
-      Prism island;
-      island.outline = hole;
-      islands.emplace_back(std::move(island));
+    for (const Given& area : given_areas(params_)) {
+      for (const formats::Ring& hole : area.polygon.holes) {
+        Prism island;
+        island.outline = hole;
+        islands.emplace_back(std::move(island));
+      }
+    }
+    if (islands.empty()) {
+      return nullptr;
     }
     return std::make_shared<kit::ShapeLayer>(std::move(islands));
   }
 
   TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
     TaskOrder order;
-    const auto flat = [](const Vec3& p) { return Point2(p.x(), p.y()); };
     const Vehicle& vehicle = request.vehicle;
     const bool stops = !vehicle.wing && !vehicle.acceleration.corner_radius_m;
-    Problem problem{area_,
-                    params_.spacing_m,
-                    {request.air_speed(), stops ? vehicle.acceleration.mps2 : kInfinity},
-                    params_.closed && !(ends.goal && !ends.start),
-                    {},
-                    {},
-                    kUncovered};
-    // Of an end beside the area the order knows where it enters.
-    const auto within = [&](const Vec3& end) {
-      const Point2 p = flat(end);
-      return area_.is_outside(p) ? area_.nearest(p) : p;
+    const LegTime time{request.air_speed(), stops ? vehicle.acceleration.mps2 : kInfinity};
+    const auto place = [](const std::optional<Vec3>& end) {
+      return end ? std::optional(flat(*end)) : std::nullopt;
     };
-    if (ends.start) {
-      problem.start = within(*ends.start);
-    }
-    if (ends.goal) {
-      problem.goal = within(*ends.goal);
-      problem.closed = false;
-    }
-    for (const auto& end : {problem.start, problem.goal}) {
-      if (end && !area_.sees(*end, *end)) {
-        order.status = PlanStatus::invalid_problem;
-        order.message = "the start and the goal must lie outside the islands of the area";
-        return order;
-      }
-    }
     BudgetWatch watch(request.budget);
     RandomStream random = request.random;
-    const Sweep found = sweep(problem, params_.attempts, random(),
-                              [&](std::uint64_t iterations) { return watch.spent(iterations); });
-    order.counters = {{"expanded", std::int64_t(found.iterations)}};
-    order.budget_hit = !found.is_complete;
-    if (found.flown.points.empty()) {
-      if (found.is_complete) {
-        order.message = "the area is too small for a line: lower spacing_m";
+    std::uint64_t iterations = 0;
+    double bound_s = 0;
+    Tour tour;
+    for (const Stage& stage :
+         stages_of(areas_, place(ends.start), place(ends.goal), params_.closed)) {
+      const std::string& name = names_[std::size_t(stage.area - areas_.data())];
+      const Problem problem{*stage.area, params_.spacing_m, time,      stage.closed,
+                            stage.start, stage.goal,        kUncovered};
+      for (const auto& end : {problem.start, problem.goal}) {
+        if (end && !stage.area->sees(*end, *end)) {
+          order.status = PlanStatus::invalid_problem;
+          order.message = "the start and the goal must lie outside the islands of the area";
+          return order;
+        }
+      }
+      const Sweep found = sweep(problem, params_.attempts, random(),
+                                [&](std::uint64_t more) { return watch.spent(iterations + more); });
+      iterations += found.iterations;
+      order.counters = {{"expanded", std::int64_t(iterations)}};
+      order.budget_hit = order.budget_hit || !found.is_complete;
+      if (found.flown.points.empty()) {
+        if (found.is_complete) {
+          order.message = name + " is too small for a line: lower spacing_m";
+          return order;
+        }
+        order.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
+        order.message = "the budget ended before the first tour";
         return order;
       }
-      order.status = watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out;
-      order.message = "the budget ended before the first tour";
-      return order;
+      for (std::size_t i = 0; i < found.flown.points.size(); ++i) {
+        tour.go_to(found.flown.points[i], i == 0 ? char(0) : found.needed[i - 1]);
+        tour.within.resize(tour.points.size(), stage.area);
+      }
+      bound_s = found.bound_s;
     }
-    fill(order, problem, found, request, ends);
+    fill(order, std::move(tour), time, request, ends);
+    // Of other speeds than the vehicle's own nothing is known, nor of ends beside the area, nor of
+    // several.
+    const auto is_beside = [&](const std::optional<Vec3>& end) {
+      return end && areas_[0].is_outside(flat(*end));
+    };
+    const bool is_bounded = areas_.size() == 1 && request.wind.is_calm() &&
+                            request.vehicle.speed_near.empty() && !is_beside(ends.start) &&
+                            !is_beside(ends.goal);
+    order.bound_s = is_bounded ? std::min(bound_s, order.time_s) : 0;
     return order;
   }
 
@@ -201,8 +148,8 @@ class Cover final : public Task {
       Polyline line{flown.back()};
       line.insert(line.end(), between.begin(), between.end());
       line.push_back(to);
-      line = at_height(line);
-      between.assign(line.begin() + 1, line.end() - 1);
+      line = without_repeats(at_height(line));
+      between.assign(line.begin() + 1, line.end() - (line.size() > 1 ? 1 : 0));
       flown.insert(flown.end(), between.begin(), between.end());
     };
     for (Pass& pass : order.passes) {
@@ -217,9 +164,9 @@ class Cover final : public Task {
   }
 
   /// The tour as one flight, from a pass on if it may begin anywhere.
-  Flight whole(const Sweep& found, const TaskEnds& ends) const {
-    Flight flight{found.flown.points, found.needed};
+  Flight whole(Flight flight, const TaskEnds& ends) const {
     if (params_.closed && !ends.start && !ends.goal) {
+      flight.go_to(Point2(flight.points.front()), 0);
       const auto first =
           std::find(flight.needed.begin(), flight.needed.end(), char(1)) - flight.needed.begin();
       flight.points.pop_back();
@@ -237,6 +184,19 @@ class Cover final : public Task {
       flight.needed.pop_back();
     }
     return flight;
+  }
+
+  /// The tour as a closed one from home on: the start, or of several areas where it begins.
+  static Tour from_home(Tour tour, const TaskEnds& ends) {
+    const Point2 home = ends.start ? flat(*ends.start) : tour.points.front();
+    if (home != tour.points.front()) {
+      tour.points.insert(tour.points.begin(), home);
+      tour.needed.insert(tour.needed.begin(), 0);
+      tour.within.insert(tour.within.begin(), nullptr);
+    }
+    tour.go_to(home, 0);
+    tour.within.resize(tour.points.size(), tour.within.front());
+    return tour;
   }
 
   /// Adds a flight's passes, the legs that cover what no other does; the others join them.
@@ -269,16 +229,18 @@ class Cover final : public Task {
     }
   }
 
-  void fill(TaskOrder& order, const Problem& problem, const Sweep& found, const Request& request,
+  void fill(TaskOrder& order, Tour tour, const LegTime& time, const Request& request,
             const TaskEnds& ends) const {
-    std::vector<Flight> flights{whole(found, ends)};
-    const double capacity_s = params_.capacity_s.value_or(kInfinity);
-    if (found.flown.time_s > capacity_s) {
-      flights = flights_of(problem, found, capacity_s);
-      if (flights.empty()) {
-        order.message = "no flight of capacity_s covers the farthest pass and returns";
-        return;
+    std::vector<Flight> flights{whole(tour, ends)};
+    if (params_.capacity_s) {
+      tour = from_home(std::move(tour), ends);
+      if (tour.seconds(time) > *params_.capacity_s) {
+        flights = flights_of(tour, time, areas_.size() == 1 && !ends.start, *params_.capacity_s);
       }
+    }
+    if (flights.empty()) {
+      order.message = "no flight of capacity_s covers the farthest pass and returns";
+      return;
     }
     for (const Flight& flight : flights) {
       if (flights.size() > 1) {  // all begin where the first does
@@ -291,17 +253,11 @@ class Cover final : public Task {
     order.status = PlanStatus::solved;
     order.closes = params_.closed;
     order.time_s = flown_time(Route(raise(order, ends)), request);
-    // Of other speeds than the vehicle's own nothing is known, nor of ends beside the area.
-    const auto is_beside = [&](const std::optional<Vec3>& end) {
-      return end && area_.is_outside({end->x(), end->y()});
-    };
-    const bool is_bounded = request.wind.is_calm() && request.vehicle.speed_near.empty() &&
-                            !is_beside(ends.start) && !is_beside(ends.goal);
-    order.bound_s = is_bounded ? std::min(found.bound_s, order.time_s) : 0;
   }
 
   Params params_;
-  Area area_;
+  std::vector<Area> areas_;
+  std::vector<std::string> names_;
   double height_m_;
   World world_;  ///< with above_ground_m
 };

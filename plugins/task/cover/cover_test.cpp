@@ -127,6 +127,106 @@ TEST(Cover, FlightsKeepTheCapacityAndShareAPlace) {
   EXPECT_EQ(small->order(copter(), {}).status, PlanStatus::no_route);
 }
 
+/// Three squares of 40 m in a row, the middle one last.
+const char* const kSquares =
+    "outline_m: [[0, 0], [40, 0], [40, 40], [0, 40]], name: west, more_areas: ["
+    "{outline_m: [[400, 0], [440, 0], [440, 40], [400, 40]], name: east}, "
+    "{outline_m: [[200, 0], [240, 0], [240, 40], [200, 40]], "
+    "holes_m: [[[210, 10], [210, 30], [230, 20]]], name: middle}]";
+
+/// Share of the squares, but for the island, that the passes come within 1.5 m of.
+double squares_covered(const TaskOrder& order, const Environment& island) {
+  RandomStream random(7);
+  int free = 0;
+  int near = 0;
+  while (free < 20'000) {
+    const Vec3 p = random.in({{0, 0, 0}, {440, 40, 0}});
+    if (std::fmod(p.x(), 200) > 40 || island.clearance(p) <= 0) {
+      continue;
+    }
+    ++free;
+    near += std::any_of(order.passes.begin(), order.passes.end(), [&](const Pass& pass) {
+      for (std::size_t i = 1; i < pass.points.size(); ++i) {
+        if (point_leg_distance(p, pass.points[i - 1], pass.points[i]) <= 1.5) {
+          return true;
+        }
+      }
+      return false;
+    });
+  }
+  return double(near) / free;
+}
+
+TEST(Cover, CoversSeveralAreasInAGoodOrder) {
+  const auto task = testing::make_task("cover", "{" + std::string(kSquares) + "}");
+  const auto island = task->obstacles();
+  for (const TaskEnds& ends :
+       {TaskEnds{}, TaskEnds{Vec3(-50, 20, 0), {}}, TaskEnds{Vec3(-50, 20, 0), Vec3(500, 20, 0)}}) {
+    const TaskOrder order = task->order(copter(), ends);
+    ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+    EXPECT_GE(squares_covered(order, *island), 0.9997);
+    const Polyline route = waypoints(order, ends);
+    EXPECT_EQ(route.back(), ends.goal.value_or(route.front()));
+    double between = 0;  // the squares
+    for (std::size_t i = 1; i < route.size(); ++i) {
+      EXPECT_FALSE(island->blocked(route[i - 1], route[i], 0)) << i;
+      between += (route[i] - route[i - 1]).norm() > 100 ? (route[i] - route[i - 1]).norm() : 0;
+    }
+    EXPECT_NEAR(between, ends.goal ? 320 : ends.start ? 770 : 680, 15);
+    EXPECT_NEAR(order.time_s, flown_time(route, copter()), 1e-6);
+  }
+}
+
+TEST(Cover, FlightsOverSeveralAreasBeginBesideThem) {
+  const auto task = testing::make_task("cover", "{capacity_s: 450, " + std::string(kSquares) + "}");
+  const TaskEnds ends{Vec3(-50, 20, 0), {}};
+  const TaskOrder order = task->order(copter(), ends);
+  ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+  EXPECT_GE(squares_covered(order, *task->obstacles()), 0.9997);
+  const Polyline route = waypoints(order, ends);
+  Polyline flight{*ends.start};
+  int flights = 0;
+  for (std::size_t i = 1; i < route.size(); ++i) {
+    flight.push_back(route[i]);
+    if (route[i] == *ends.start) {
+      EXPECT_LE(flown_time(Route(flight), copter()), 450 + 1e-6);
+      flight = {*ends.start};
+      ++flights;
+    }
+  }
+  EXPECT_EQ(flight.size(), 1U);
+  EXPECT_GE(flights, 3);
+  EXPECT_EQ(task->order(copter(), {}).status, PlanStatus::solved);  // from a place of its own
+}
+
+TEST(Cover, NamesTheAreaThatCannotBeFlown) {
+  const auto said = [](const std::string& more) {
+    try {
+      return testing::make_task("cover", "{name: home, more_areas: [" + more + "]}")
+          ->order(copter(), {})
+          .message;
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_NE(said("{name: pond, outline_m: [[90, 50], [200, 50], [200, 90]]}")
+                .find("the area 'home' and the area 'pond' overlap"),
+            std::string::npos);
+  EXPECT_NE(said("{name: pond, outline_m: [[200, 0], [300, 90], [300, 0], [200, 90]]}")
+                .find("the area 'pond': the outline meets itself"),
+            std::string::npos);
+  EXPECT_NE(said("{outline_m: [[200, 0], [200.1, 0], [200.1, 0.1]]}")
+                .find("area 1 is too small for a line"),
+            std::string::npos);
+  // Within an island there is no way in.
+  EXPECT_THROW(testing::make_task("cover",
+                                  "{holes_m: [[[10, 10], [90, 10], [90, 90], [10, 90]]], "
+                                  "more_areas: [{outline_m: [[20, 20], [60, 20], [60, 60]]}]}"),
+               Error);
+  // Fields that share an edge, to a millimetre.
+  EXPECT_EQ(said("{outline_m: [[99.999, 0], [200, 0], [200, 100], [99.999, 100]]}"), "");
+}
+
 TEST(Cover, EndsWithItsBudget) {
   const auto task = testing::make_task("cover");
   Request request = copter();

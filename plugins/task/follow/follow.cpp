@@ -81,6 +81,9 @@ class Follow final : public Task {
       passes_.push_back(params_.height_m ? at_height(pass, *params_.height_m)
                                          : over_ground(pass, *site.before));
     }
+    if (params_.above_ground_m) {
+      world_ = *site.before;
+    }
   }
 
  private:
@@ -128,6 +131,15 @@ class Follow final : public Task {
     return box;
   }
 
+  /// Waypoints between two points that keep the height above the ground.
+  Polyline between(const Vec3& from, const Vec3& to) const {
+    if (!params_.above_ground_m || (to - from).head<2>().norm() < kLengthTolerance) {
+      return {};
+    }
+    const Polyline line = over_ground({from, to}, world_);
+    return {line.begin() + 1, line.end() - 1};
+  }
+
   /// Passes in their order, each from the end that is nearer; the first from the start's side.
   TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
     TaskOrder order;
@@ -136,15 +148,24 @@ class Follow final : public Task {
     if (here) {
       flown.push_back(*here);
     }
+    const auto fly_to = [&](Polyline& join, const Vec3& to) {
+      if (here) {
+        join = between(*here, to);
+        flown.insert(flown.end(), join.begin(), join.end());
+      }
+    };
     for (Polyline pass : passes_) {
       if (here && (pass.back() - *here).norm() < (pass.front() - *here).norm()) {
         std::reverse(pass.begin(), pass.end());
       }
+      Pass& next = order.passes.emplace_back();
+      fly_to(next.join, pass.front());
       here = pass.back();
       flown.insert(flown.end(), pass.begin(), pass.end());
-      order.passes.push_back({std::move(pass)});
+      next.points = std::move(pass);
     }
     if (ends.goal) {
+      fly_to(order.last_join, *ends.goal);
       flown.push_back(*ends.goal);
     }
     order.status = PlanStatus::solved;
@@ -154,6 +175,7 @@ class Follow final : public Task {
 
   Params params_;
   std::vector<Polyline> passes_;
+  World world_;  ///< with above_ground_m
 };
 }  // namespace
 }  // namespace altiplan::follow
