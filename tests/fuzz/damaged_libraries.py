@@ -50,6 +50,7 @@ PARAMETERS = {
     "ground_clearance": "{min_m: 1}",
     "ground_distance": "{max_m: 100}",
     "leg_length": "{min_m: 0.1}",
+    "line_distance": "{line_m: [[0, 0], [1, 0]], within_m: 100000}",
     "route_length": "{max_ratio: 5}",
     "turn_angle": "{max_deg: 170}",
     "turn_radius": "{min_m: 0.1}",
