@@ -119,11 +119,10 @@ std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<
       busy("building the world", [&] { return host::build_mission(config, 1); });
   source->name =
       config.scenario.name.empty() ? config.scenario_path.stem().string() : config.scenario.name;
-  if (mission.task) {  // which may leave the ends open
-    mission.request.start.position = source->route.front();
-    mission.request.goal.position = source->route.back();
+  if (mission.task && !mission.ends.goal) {
     mission.request.goal.tolerance_m = 1;  // files of missions round points
   }
+  host::take_open_ends(mission, source->route);
   if (route.flight) {
     source->events = host::build_events(config, mission);
   }

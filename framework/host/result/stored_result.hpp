@@ -8,6 +8,7 @@
 
 #include "host/config/config.hpp"
 #include "host/flight/track_judge.hpp"
+#include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 
 namespace altiplan::host {
@@ -36,6 +37,9 @@ Json read_json(const std::string& file, const std::string& expected);
 /// Throws Error for a point farther away than anything flies: queries of the world would take
 /// forever.
 void expect_reachable(const Polyline& route, const std::string& file);
+
+/// Ends that a scenario with a task leaves open are those of its route.
+void take_open_ends(Mission& mission, const Route& route);
 
 /// Reads the legs of a result or a step, or else its route, or a list of [x, y, z]; `file` is for
 /// messages. Throws Error, also for an empty route.

@@ -179,7 +179,10 @@ class SceneBuilder {
     say("building the world of " + of.file);
     const Config config = load_config(of.pipeline, of.overrides, registry_);
     registry_ = config.registry;
-    const Mission mission = build_mission(config, 1);
+    Mission mission = build_mission(config, 1);
+    if (of.route) {
+      take_open_ends(mission, *of.route);
+    }
     say("drawing the world of " + of.file);
     if (scene_.is_null()) {
       box_ = scene_box(mission, results_);
@@ -200,6 +203,9 @@ class SceneBuilder {
     for (const std::size_t n : group) {
       by_json(results_[n], [&] {
         say("judging " + results_[n].file + number_of(n));
+        if (results_[n].route) {
+          take_open_ends(mission, *results_[n].route);
+        }
         results[n] = result_scene(results_[n], mission, events, {samples}, notes_);
         results[n]["trace"] = trace_scene(results_[n], notes_, [&](double share) {
           say("reading the trace of " + results_[n].file + ": " + std::to_string(int(100 * share)) +
