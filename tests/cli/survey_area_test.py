@@ -26,13 +26,30 @@ def lonlat(place, x, y):
     return lon + x / 111_320 / math.cos(math.radians(lat)), lat + y / 111_320
 
 
-def kml(place, *rings):
+def polygon(place, *rings):
     def text(ring):
         corners = " ".join("{:.8f},{:.8f},0".format(*lonlat(place, *p)) for p in [*ring, ring[0]])
         return f"<LinearRing><coordinates>{corners}</coordinates></LinearRing>"
     inner = "".join(f"<innerBoundaryIs>{text(ring)}</innerBoundaryIs>" for ring in rings[1:])
-    return ('<kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark><name>field</name><Polygon>'
-            f"<outerBoundaryIs>{text(rings[0])}</outerBoundaryIs>{inner}</Polygon></Placemark></Document></kml>")
+    return f"<Polygon><outerBoundaryIs>{text(rings[0])}</outerBoundaryIs>{inner}</Polygon>"
+
+
+def document(**geometries):
+    marks = (f"<Placemark><name>{name}</name>{geometry}</Placemark>" for name, geometry in geometries.items())
+    return f'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>{"".join(marks)}</Document></kml>'
+
+
+def kml(place, *rings):
+    return document(field=polygon(place, *rings))
+
+
+def moved(ring, x, y):
+    return [(px + x, py + y) for px, py in ring]
+
+
+def line(place, *points):
+    corners = " ".join("{:.8f},{:.8f}".format(*lonlat(place, *p)) for p in points)
+    return f"<LineString><coordinates>{corners}</coordinates></LineString>"
 
 
 def is_within(p, ring):
@@ -69,7 +86,7 @@ class Survey(unittest.TestCase):
         """One whose plan passes where it may be 5 % off the height of its photos, and no more."""
         out, _ = self.call("survey", area, "--terrain", terrain, *CAMERA, "-o", "out", "--json", *options)
         answer = json.loads(out)
-        self.assertEqual(answer["verdict"], "pass")
+        self.assertEqual(answer["verdict"], "pass", answer)
         height = answer["above_ground_m"]
         self.assertAlmostEqual(height, 81.7021, 3)  # 2 cm * 6000 px * 16 mm / 23.5 mm
         self.call("check", "out/route.plan", "--terrain", terrain, "--min-agl", str(0.95 * height), "--max-agl",
@@ -77,13 +94,21 @@ class Survey(unittest.TestCase):
         self.assertGreaterEqual(answer["gsd_cm"][0], 1.9)
         self.assertLessEqual(answer["gsd_cm"][1], 2.1)
         self.assertGreater(answer["coverage"], 0.99)
+        self.call("check", "out/result.json")
+        self.assertNotIn("judged now", (self.folder / "out/page.html").read_text())
+        checked = self.shown("out/route.plan", terrain)
+        self.assertEqual(checked["lines"], answer["lines"])
+        self.assertAlmostEqual(checked["coverage"], answer["coverage"], 3)
         self.assertEqual(sorted(file.name for file in (self.folder / "out").iterdir()),
                          ["page.html", "pipeline.yaml", "result.json", "route.plan", "scenario.yaml"])
         return answer
 
-    def lines(self, place):
+    def shown(self, plan, terrain):
+        return json.loads(self.call("check", plan, "--survey", "--terrain", terrain, "--json")[0])
+
+    def lines(self, place, plan="route.plan"):
         """Of the plan, along which the camera is on: metres from the place; and the items."""
-        items = json.loads((self.folder / "out/route.plan").read_text())["mission"]["items"]
+        items = json.loads((self.folder / "out" / plan).read_text())["mission"]["items"]
         lines, at, is_on = [], None, False
         for item in items:
             if item["command"] == 206:
@@ -146,13 +171,113 @@ class Survey(unittest.TestCase):
                   if item["command"] == 178]
         self.assertEqual(speeds, [5])
 
+    def test_several_areas(self):
+        east = moved(FIELD, 900, 0)
+        areas = self.write(document(west=polygon(RIDGE, FIELD, ISLAND), east=polygon(RIDGE, east),
+                                    middle=polygon(RIDGE, moved(FIELD, 450, 0))))
+        answer = self.survey(areas, TERRAIN)
+        lines, _ = self.lines(RIDGE)
+        middles = [sum(p[0] for p in line) / len(line) for line in lines]
+        legs = [(a, b) for line in lines for a, b in zip(line, line[1:])]
+        for ring in (FIELD, east, moved(FIELD, 450, 0)):
+            places = [(x, y) for x in range(0, 1250, 10) for y in range(0, 240, 10) if is_within((x, y), ring)
+                      and not is_within((x, y), ISLAND)]
+            missed = [p for p in places if min(distance(p, a, b) for a, b in legs) > 18.2]
+            self.assertLess(len(missed), 3, missed)
+        self.assertGreater(answer["area_m2"], 3 * 65_000)
+        # Each is flown at once, and the middle one is not left for last.
+        fields = [min(range(3), key=lambda n, x=x: abs(x - 165 - 450 * n)) for x in middles]
+        self.assertEqual([n for i, n in enumerate(fields) if i == 0 or fields[i - 1] != n].count(1), 1, fields)
+
+    def test_areas_that_are_wrong_are_named(self):
+        camera = ["--terrain", TERRAIN, *CAMERA]
+        both = self.write(document(west=polygon(RIDGE, FIELD), pond=polygon(RIDGE, moved(FIELD, 200, 0))))
+        self.refused("the area 'west' and the area 'pond' overlap", both, *camera)
+        tiny = self.write(document(west=polygon(RIDGE, FIELD), pond=polygon(RIDGE, [(400, 0), (405, 0), (405, 5)])))
+        out, _ = self.call("survey", tiny, *camera, code=1)
+        self.assertIn("the area 'pond' is too small", out)
+        shutil.rmtree(self.folder / "field")
+        flat = self.write(document(west=polygon(RIDGE, FIELD), pond=polygon(RIDGE, [(400, 0), (405, 0), (410, 0)])))
+        self.refused("'pond'", flat, *camera)
+        far = self.write(document(west=polygon(RIDGE, FIELD), pond=polygon((-83, 36.6), FIELD)))
+        self.refused("'pond', corner 1", far, *camera)
+
+    def test_several_flights(self):
+        area = self.write(document(west=polygon(RIDGE, FIELD, ISLAND), east=polygon(RIDGE, moved(FIELD, 450, 0))))
+        home = lonlat(RIDGE, -60, 100)
+        out, _ = self.call("survey", area, "--terrain", TERRAIN, *CAMERA, "--from", "{:.7f},{:.7f}".format(*home),
+                           "--flight-minutes", "10", "--battery", "60", "--power", "300", "-o", "out", "--json")
+        answer = json.loads(out)
+        self.assertEqual(answer["verdict"], "pass")
+        self.assertGreater(answer["coverage"], 0.99)
+        flights = answer["flights"]
+        self.assertGreater(len(flights), 1)
+        self.assertLess(len(flights), 8)
+        self.assertEqual(sorted(file.name for file in (self.folder / "out").glob("*.plan")),
+                         [f"route-{n + 1}.plan" for n in range(len(flights))])
+        all_lines, shares = [], []
+        for n, flight in enumerate(flights):
+            self.assertEqual(flight["verdict"], "pass")
+            self.assertLessEqual(flight["time_s"][1], 600)
+            self.assertLessEqual(flight["max_wh"], 48)
+            lines, items = self.lines(RIDGE, f"route-{n + 1}.plan")
+            all_lines += lines
+            for item in (items[0], items[-1]):
+                self.assertAlmostEqual(item["params"][4], home[1], 6)
+                self.assertAlmostEqual(item["params"][5], home[0], 6)
+            self.call("check", f"out/route-{n + 1}.plan", "--terrain", TERRAIN)
+            shares.append(self.shown(f"out/route-{n + 1}.plan", TERRAIN)["coverage"])
+        self.assertEqual(len(all_lines), answer["lines"])
+        self.assertLess(max(shares), answer["coverage"])
+        self.assertGreater(sum(shares), answer["coverage"])  # photos overlap
+        text, _ = self.call("survey", area, "--terrain", TERRAIN, *CAMERA, "--flight-minutes", "11")
+        self.assertIn("route-1.plan: check: pass", text)
+        # Half a minute brings no photo home.
+        out, _ = self.call("survey", area, "--terrain", TERRAIN, *CAMERA, "--flight-minutes", "0.5", code=1)
+        self.assertIn("no flight", out)
+
+    def test_along_a_line(self):
+        corners = [(0, 0), (400, 100), (700, -150)]
+        self.write(document(cable=line(RIDGE, *corners)), "line.kml")
+        coordinates = [lonlat(RIDGE, *p) for p in corners]
+        self.write(json.dumps({"type": "Feature", "properties": {},
+                               "geometry": {"type": "LineString", "coordinates": coordinates}}), "line.geojson")
+        legs = list(zip(corners, corners[1:]))
+        home = "{:.7f},{:.7f}".format(*lonlat(RIDGE, -60, 100))
+        for file in ("line.kml", "line.geojson"):
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            out, _ = self.call("survey", file, "--terrain", TERRAIN, "--camera", "a6000_16", "--agl", "80", "--offset",
+                               "30", "--offset", "-30", "--from", home, "-o", "out", "--json")
+            answer = json.loads(out)
+            self.assertEqual(answer["verdict"], "pass")
+            self.assertAlmostEqual(answer["above_ground_m"], 80, 9)
+            self.assertIsNone(answer["coverage"])
+            lines, items = self.lines(RIDGE)
+            self.assertEqual(len(lines), 2)
+            self.assertEqual([items[0]["command"], items[-1]["command"]], [22, 21])
+            self.assertEqual(items[0]["params"][4:6], items[-1]["params"][4:6])
+            for flown in lines:
+                for p in flown:
+                    self.assertGreater(min(distance(p, a, b) for a, b in legs), 29.5)
+                    self.assertLess(min(distance(p, a, b) for a, b in legs), 40)  # beyond the corner
+            self.call("check", "out/route.plan", "--terrain", TERRAIN, "--min-agl", "76", "--max-agl", "84")
+        out, _ = self.call("survey", "line.kml", "--terrain", TERRAIN, *CAMERA, "--width", "150", "--json")
+        answer = json.loads(out)
+        self.assertEqual((answer["verdict"], answer["lines"]), ("pass", 5))  # 36 m apart at most
+        self.assertGreater(answer["coverage"], 0.99)
+        self.refused("has areas, not a line", self.write(kml(RIDGE, FIELD)), "--terrain", TERRAIN, *CAMERA, "--width",
+                     "50", left=["line", "out"])
+
     def test_a_battery(self):
         area = self.write(kml(RIDGE, FIELD))
-        for wh, code, said in ((20, 1, "flights or more"), (500, 0, "1 flight or more")):
+        for wh, most in ((500, 1), (40, 4)):
             out, _ = self.call("survey", area, "--terrain", TERRAIN, *CAMERA, "--battery", str(wh), "--power", "300",
-                               code=code)
-            self.assertIn(said, out)
-            self.assertIn("check: " + ("fail" if code else "pass"), out)
+                               "-o", f"out{wh}")
+            flights = len(list((self.folder / f"out{wh}").glob("*.plan")))
+            self.assertLessEqual(flights, most)
+            self.assertGreater(flights, most / 4)
+            self.assertEqual(out.count("check: pass"), flights, out)
+            self.assertEqual(out.count("Wh that may be used"), flights, out)
 
     @unittest.skipUnless(DATA.is_dir(), "no test data: set ALTIPLAN_TEST_DATA")
     def test_mountains(self):
@@ -170,11 +295,39 @@ class Survey(unittest.TestCase):
             self.assertIn("no route", out)
             self.assertIn(said, out)
 
-    def refused(self, said, *arguments, code=3):
+    def refused(self, said, *arguments, code=3, left=()):
         _, err = self.call("survey", *arguments, code=code)
         self.assertIn(said, err)
         self.assertEqual(err.replace("Run with --help for more information.\n", "").strip().count("\n"), 0, err)
-        self.assertEqual(list(self.folder.glob("*/")), [])
+        self.assertEqual(sorted(file.name for file in self.folder.iterdir() if file.is_dir()), list(left))
+
+    def test_check_computes_what_photos_show(self):
+        area = self.write(kml(RIDGE, FIELD))
+        whole = self.survey(area, TERRAIN)["coverage"]
+        plan = json.loads((self.folder / "out/route.plan").read_text())
+        items = plan["mission"]["items"]
+        on = [item for item in items if item["command"] == 206 and item["params"][0] > 0]
+        for item in on[:3]:  # lines without photos; a photo shows 60 m to the sides, lines are 36 m apart
+            item["params"][0] = 0
+        self.write(json.dumps(plan), "less.plan")
+        self.assertLess(self.shown("less.plan", TERRAIN)["coverage"], whole - 0.02)
+        for item in items:
+            if item["command"] == 206:
+                item["params"][0] *= 5  # each photo shows 80 m of the 100 m between two
+        self.write(json.dumps(plan), "less.plan")
+        self.assertLess(self.shown("less.plan", TERRAIN)["coverage"], 0.85)
+        for key, value, said in (("across_m", 0, "across_m: expected a positive number"),
+                                 ("areas", [], "areas: expected one or more"),
+                                 ("areas", 5, "expected areas with outline")):
+            damaged = json.loads(json.dumps(plan))
+            damaged["altiplan"]["survey"][key] = value
+            self.write(json.dumps(damaged), "damaged.plan")
+            _, err = self.call("check", "damaged.plan", "--survey", "--terrain", TERRAIN, code=3)
+            self.assertIn("damaged.plan: altiplan.survey: " + said, err)
+        del plan["altiplan"]
+        self.write(json.dumps(plan), "plain.plan")
+        _, err = self.call("check", "plain.plan", "--survey", "--terrain", TERRAIN, code=3)
+        self.assertIn("plain.plan: expected a survey that altiplan survey has written", err)
 
     def test_errors_say_what_was_expected(self):
         area = self.write(kml(RIDGE, FIELD))
@@ -193,9 +346,11 @@ class Survey(unittest.TestCase):
         self.refused("crossing.kml", crossing, *terrain, *CAMERA)
         beyond = self.write(kml((-83, 36.6), FIELD), "beyond.kml")
         self.refused("beyond.kml: corner 1", beyond, *terrain, *CAMERA)
-        line = self.write('<kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><LineString><coordinates>'
-                          "-84.2,36.6,0 -84.1,36.6,0</coordinates></LineString></Placemark></kml>", "line.kml")
-        self.refused("line.kml: expected one polygon", line, *terrain, *CAMERA)
+        pin = self.write(document(mast="<Point><coordinates>-84.2,36.6,0</coordinates></Point>"), "pin.kml")
+        self.refused("pin.kml: expected polygons, which may have holes, or one line", pin, *terrain, *CAMERA)
+        lines = self.write(document(a=line(RIDGE, (0, 0), (9, 9)), b=line(RIDGE, (0, 9), (9, 0))), "lines.kml")
+        self.refused("lines.kml: expected one LineString", lines, *terrain, *CAMERA)
+        self.refused("--gsd-cm or --agl is required", area, *terrain, *CAMERA[:2], code=2)
         self.refused("missing.kml", "missing.kml", *terrain, *CAMERA)
         cut = self.write(kml(RIDGE, FIELD, [(16.5, 100), (310, 110), (313, 130), (18.5, 120)]), "cut.kml")
         self.refused("cut the area into 2 parts", cut, *terrain, *CAMERA)

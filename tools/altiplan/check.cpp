@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "altiplan/formats/mission_file.hpp"
-#include "altiplan/formats/qgc_survey.hpp"
+#include "check_survey.hpp"
 #include "commands.hpp"
 #include "flight_text.hpp"
 #include "host/base/words.hpp"
@@ -116,8 +116,9 @@ int check_result(const CheckArguments& arguments) {
     return kNoRoute;
   }
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
-  const host::Mission mission =
+  host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
+  host::take_open_ends(mission, *stored.route);
   return report(mission, *stored.route, stored.track, stored.telemetry,
                 host::build_events(config, mission), arguments.mission.plan.json);
 }
@@ -138,41 +139,6 @@ int check_route(const CheckArguments& arguments) {
         "checked");
   }
   return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json);
-}
-
-/// Makes a plan's surveys again and compares them with its items.
-int check_survey(const CheckArguments& arguments) {
-  host::Json surveys = host::Json::array();
-  double differ_m = 0;
-  double coverage = 1;
-  bool are_equal = true;
-  for (const formats::qgc::SurveyMatch& match : formats::qgc::match_surveys(*arguments.result)) {
-    const bool is_equal = match.problem.empty();
-    are_equal = are_equal && is_equal;
-    differ_m = std::max(differ_m, match.differ_m);
-    coverage = std::min(coverage, match.coverage);
-    surveys.push_back({{"item", match.place},
-                       {"items", match.commands},
-                       {"items_differ_m", is_equal ? host::Json(match.differ_m) : host::Json()},
-                       {"coverage", match.coverage},
-                       {"plane", match.plane},
-                       {"problem", match.problem}});
-    if (!arguments.mission.plan.json) {
-      std::printf("%s: %zu items, %s; lines cover %s %% of the area\n", match.place.c_str(),
-                  match.commands,
-                  is_equal ? ("as made again, to " + fixed(match.differ_m, 3) + " m").c_str()
-                           : match.problem.c_str(),
-                  fixed(100 * match.coverage, 2).c_str());
-    }
-  }
-  if (arguments.mission.plan.json) {
-    std::cout << host::file_text(
-        {{"surveys", surveys},
-         {"items_differ_m", are_equal ? host::Json(differ_m) : host::Json()},
-         {"coverage", coverage}});
-  }
-  constexpr double kAsMade = 0.1;  // metres
-  return are_equal && differ_m <= kAsMade ? kDone : kNoRoute;
 }
 
 /// What is written besides the verdict; returns the options.
@@ -217,9 +183,8 @@ bool is_plan(const CheckArguments& arguments) {
 /// Throws UsageError for options that do not fit together.
 void expect_fitting(const CheckArguments& arguments, const std::vector<Option*>& outputs) {
   if (arguments.survey) {
-    const bool is_alone = arguments.result && !is_plan(arguments);
-    if (!is_alone) {
-      throw UsageError{"--survey takes a .plan alone"};
+    if (!arguments.result || arguments.mission.plan.scenario) {
+      throw UsageError{"--survey takes a .plan, and --terrain for one of altiplan survey"};
     }
     return;
   }
@@ -242,12 +207,12 @@ void add_check(App& app, Action& action) {
   auto outputs = std::make_shared<std::vector<Option*>>();
   const auto prepare = [outputs](CheckArguments& given) {
     expect_fitting(given, *outputs);
-    if (!given.survey) {
+    if (!given.survey || is_plan(given)) {
       given.mission.plan = checked_plan(given.mission, given.result.value_or(""));
     }
   };
   const auto check = [](const CheckArguments& given) {
-    return given.survey     ? check_survey(given)
+    return given.survey     ? check_survey(*given.result, given.mission.plan, given.overrides)
            : is_plan(given) ? check_plan(given.mission.plan, given.overrides)
            : given.result   ? check_result(given)
                             : check_route(given);
@@ -279,7 +244,8 @@ void add_check(App& app, Action& action) {
   command
       .add_flag("--survey", arguments.survey,
                 "make the surveys of a QGroundControl .plan again from their settings, and compare "
-                "them with its items")
+                "them with its items; of a plan of altiplan survey, with --terrain, see what its "
+                "photos show")
       ->excludes(route);
   add_plugin_path(command, arguments.overrides);
   command.add_flag("--json", arguments.mission.plan.json, "print as JSON");

@@ -211,6 +211,7 @@ ALTIPLAN_OPTION(std::optional<std::filesystem::path>);
 ALTIPLAN_OPTION(std::vector<std::filesystem::path>);
 ALTIPLAN_OPTION(double);
 ALTIPLAN_OPTION(std::optional<double>);
+ALTIPLAN_OPTION(std::vector<double>);
 ALTIPLAN_OPTION(int);
 ALTIPLAN_OPTION(std::optional<int>);
 ALTIPLAN_OPTION(std::int64_t);

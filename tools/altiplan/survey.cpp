@@ -6,78 +6,52 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "first_run.hpp"
 #include "host/base/output_file.hpp"
 #include "host/base/words.hpp"
-#include "host/first_route/shown.hpp"
-#include "host/import_export/plan.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
 #include "progress.hpp"
-#include "route_export.hpp"
+#include "survey_flights.hpp"
 
 namespace altiplan::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct SurveyArguments : FirstArguments {
-  std::string area;
-  std::string camera;
-  std::string from;
-  double gsd_cm = 0;
-  double overlap = 75;
-  double sidelap = 70;
-  double tolerance = 5;
-  bool json = false;
-};
-
-/// Shares of the tolerance of scale that are tried for the drawn route: the less of it, the more is
-/// left for how it is flown beside steep ground, and the more waypoints there are.
-constexpr double kDrawn[] = {0.6, 0.3, 0.1};
-
 host::RouteWish wish_of(const SurveyArguments& arguments) {
   host::RouteWish wish = wish_of_first(arguments);
   host::SurveyWish& survey = wish.survey.emplace();
   survey.file = arguments.area;
   survey.camera = host::camera_of(arguments.camera);
-  survey.area = host::read_area(arguments.area);
-  survey.gsd_m = arguments.gsd_cm / 100;
+  host::read_places(survey);
+  survey.gsd_m =
+      arguments.gsd_cm ? *arguments.gsd_cm / 100 : survey.camera.gsd_m(arguments.agl_m.value());
   survey.overlap = arguments.overlap / 100;
   survey.sidelap = arguments.sidelap / 100;
   survey.tolerance = arguments.tolerance / 100;
+  survey.offsets_m = arguments.offsets;
+  survey.width_m = arguments.width_m;
+  if (survey.line.empty() && (!arguments.offsets.empty() || arguments.width_m > 0)) {
+    throw Error("--offset, --width: " + arguments.area + " has areas, not a line");
+  }
   survey.has_start = !arguments.from.empty();
   if (survey.has_start) {
     wish.points.push_back(point_of("--from", arguments.from));
     wish.points.front().above_ground_m.reset();
   }
-  std::size_t corner = 0;
-  for (const auto& [lon, lat] : survey.area.outline) {
-    wish.points.push_back(
-        {arguments.area + ": corner " + std::to_string(++corner), lon, lat, std::nullopt});
-  }
-  return wish;
-}
-
-/// What is flown, and the verdict on it.
-struct Surveyed {
-  host::RunResult result;
-  std::vector<std::string> choices;
-  std::vector<std::string> zone_layers;
-  std::optional<host::PlanReport> report;  ///< none: there is no mission
-  std::string voids;
-  double shown = 0;  ///< share of the area
-};
-
-/// The passes along which photos are taken: those with a length.
-std::vector<Polyline> lines_of(const host::RunResult& result) {
-  std::vector<Polyline> lines;
-  for (const Pass& pass : result.task->passes) {
-    if (pass.points.size() > 1) {
-      lines.push_back(pass.points);
+  const auto add_corners = [&](const std::string& of, const formats::Ring& ring) {
+    std::size_t corner = 0;
+    for (const auto& [lon, lat] : ring) {
+      wish.points.push_back({of + "corner " + std::to_string(++corner), lon, lat, std::nullopt});
     }
+  };
+  for (const host::SurveyArea& area : survey.areas) {
+    const bool is_one = survey.areas.size() == 1;
+    add_corners(arguments.area + ": " + (is_one ? "" : "'" + area.name + "', "),
+                area.polygon.outline);
   }
-  return lines;
+  add_corners(arguments.area + ": ", survey.line);
+  return wish;
 }
 
 /// One at each end of a line, and between.
@@ -94,44 +68,17 @@ std::size_t photos_of(const std::vector<Polyline>& lines, double trigger_m) {
 }
 
 /// Heights above ground on the ways between items, as they may be flown.
-host::LegHeights heights_of(const host::PlanReport& report) {
+host::LegHeights heights_of(const std::vector<Flight>& flights) {
   host::LegHeights all;
-  for (const host::ReportedPart& part : report.parts) {
-    if (part.what.empty() && part.items.size() > 1) {
-      all.lowest = std::min(all.lowest, part.heights.lowest);
-      all.highest = std::max(all.highest, part.heights.highest);
+  for (const Flight& flight : flights) {
+    for (const host::ReportedPart& part : flight.report.parts) {
+      if (part.what.empty() && part.items.size() > 1) {
+        all.lowest = std::min(all.lowest, part.heights.lowest);
+        all.highest = std::max(all.highest, part.heights.highest);
+      }
     }
   }
   return all;
-}
-
-/// How far a copter may be off its lines, metres (WP_RADIUS_M, and a metre for stored numbers).
-constexpr double kOffLines = 3;
-
-/// Writes the mission with its photos, and sees what these show; false where it cannot be written.
-bool write_plan(const fs::path& folder, const SurveyArguments& arguments,
-                const host::FirstRoute& first, Surveyed& surveyed) {
-  RouteExport route;
-  route.result = folder / "result.json";
-  route.overrides = arguments.overrides;
-  route.options.format = &host::format_named("qgc-plan");
-  route.options.takeoff = route.options.land = true;
-  finish_options(route);
-  const std::optional<LoadedRoute> source = loaded(route, std::nullopt);
-  const std::optional<host::Exported> written = source ? exported(*source, route) : std::nullopt;
-  if (!written) {
-    return false;
-  }
-  const host::CameraLines camera{lines_of(surveyed.result), first.lines().trigger_m,
-                                 source->mission.request.vehicle.speed_mps};
-  host::write_file(folder / "route.plan", host::plan_text(host::plan_of(written->mission, camera)));
-  const host::SurveyLines& lines = first.lines();
-  const double per_m = 0.5 / lines.above_ground_m;
-  surveyed.shown = host::share_shown(
-      first.area(),
-      {camera.lines, lines.trigger_m, per_m * lines.across_m, per_m * lines.along_m, kOffLines},
-      source->mission.truth);
-  return true;
 }
 
 void write_page(const fs::path& folder, const SurveyArguments& arguments) {
@@ -141,82 +88,63 @@ void write_page(const fs::path& folder, const SurveyArguments& arguments) {
   host::write_file(folder / "page.html", host::viewer_page(scene.json));
 }
 
-/// True where a route that is nearer to the height of the photos may pass.
-bool may_be_nearer(const host::PlanReport& report) {
-  return !report.passed() &&
-         std::all_of(report.findings.begin(), report.findings.end(), [](const auto& finding) {
-           return finding.violation.constraint == "altitude" ||
-                  finding.violation.constraint == "ground_clearance";
-         });
-}
-
-Surveyed fly(const SurveyArguments& arguments, const host::FirstRoute& first,
-             const fs::path& folder, Interrupt& interrupt) {
-  Surveyed surveyed;
-  const host::FirstFiles files = first.files(0, folder);
-  surveyed.choices = files.choices;
-  surveyed.zone_layers = files.zone_layers;
-  surveyed.result = run_in(folder, files, arguments.overrides, interrupt);
-  if (!surveyed.result.accepted || interrupt.happened()) {
-    return surveyed;
-  }
-  const Polyline& route = surveyed.result.steps[*surveyed.result.accepted].route.waypoints();
-  surveyed.voids = first.over_voids(route);
-  if (write_plan(folder, arguments, first, surveyed)) {
-    host::GateOptions gate;
-    if (const host::RouteWish& wish = arguments.wish; wish.battery_wh) {
-      gate.battery = host::Battery{*wish.battery_wh, wish.reserve, *wish.power_w, *wish.power_w};
-    }
-    surveyed.report = judged(folder / "route.plan", first, arguments.overrides, gate);
-  }
-  return surveyed;
-}
-
-/// So many at least: each also flies out and back.
-int flights_of(const host::EnergyUse& energy) {
-  return int(std::ceil(energy.max_wh / energy.battery.usable_wh()));
-}
-
 host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
                    const host::Camera& camera, const fs::path& folder) {
-  const host::PlanReport& report = surveyed.report.value();
-  const host::LegHeights heights = heights_of(report);
-  const std::vector<Polyline> lines = lines_of(surveyed.result);
-  host::Json findings = host::Json::array();
-  for (const host::Finding& finding : report.findings) {
-    findings.push_back(finding.items.back() + ": " + finding.violation.message);
+  const host::LegHeights heights = heights_of(surveyed.flights);
+  const std::vector<Polyline> lines = surveyed.lines();
+  host::Json flights = host::Json::array();
+  for (const Flight& flight : surveyed.flights) {
+    const host::PlanReport& report = flight.report;
+    host::Json findings = host::Json::array();
+    for (const host::Finding& finding : report.findings) {
+      findings.push_back(finding.items.back() + ": " + finding.violation.message);
+    }
+    flights.push_back({{"plan", (folder / flight.file).string()},
+                       {"verdict", word_of(report.verdict())},
+                       {"findings", findings},
+                       {"time_s", {report.time.min_s, report.time.max_s}},
+                       {"max_wh", report.energy ? host::Json(report.energy->max_wh) : host::Json()},
+                       {"metrics", host::to_json(report.measures)}});
   }
-  return {{"plan", (folder / "route.plan").string()},
-          {"verdict", word_of(report.verdict())},
-          {"findings", findings},
+  return {{"verdict", surveyed.passed() ? "pass" : "fail"},
+          {"too_long", surveyed.too_long},
           {"area_m2", first.area_m2()},
           {"above_ground_m", first.lines().above_ground_m},
           {"spacing_m", first.lines().spacing_m},
           {"trigger_m", first.lines().trigger_m},
-          {"coverage", surveyed.shown},
+          {"coverage", first.areas().empty() ? host::Json() : host::Json(surveyed.shown)},
           {"lines", lines.size()},
           {"images", photos_of(lines, first.lines().trigger_m)},
           {"gsd_cm", {100 * camera.gsd_m(heights.lowest), 100 * camera.gsd_m(heights.highest)}},
-          {"flights", report.energy ? host::Json(flights_of(*report.energy)) : host::Json()},
-          {"time_s", {report.time.min_s, report.time.max_s}},
-          {"metrics", host::to_json(report.measures)}};
+          {"flights", flights}};
 }
 
 void print(const Surveyed& surveyed, const host::FirstRoute& first, const host::Camera& camera) {
-  const host::PlanReport& report = surveyed.report.value();
-  const host::LegHeights heights = heights_of(report);
-  const std::vector<Polyline> lines = lines_of(surveyed.result);
+  const host::LegHeights heights = heights_of(surveyed.flights);
+  const std::vector<Polyline> lines = surveyed.lines();
+  const bool has_area = !first.areas().empty();
   std::printf(
-      "survey: %s ha, the camera on along %zu stretches, %zu photos, %s to %s cm a pixel below it, "
-      "%s %% shown for certain\n",
-      host::with_digits(first.area_m2() / 1e4, 4).c_str(), lines.size(),
+      "survey: %sthe camera on along %zu stretches, %zu photos, %s to %s cm a pixel below it%s\n",
+      has_area ? (host::with_digits(first.area_m2() / 1e4, 4) + " ha, ").c_str() : "", lines.size(),
       photos_of(lines, first.lines().trigger_m),
       fixed(100 * camera.gsd_m(heights.lowest), 3).c_str(),
       fixed(100 * camera.gsd_m(heights.highest), 3).c_str(),
-      fixed(100 * surveyed.shown, 2).c_str());
-  if (report.energy) {
-    std::printf("energy: %s: %s or more\n", report.energy->in_words().c_str(),
-                host::counted(std::size_t(flights_of(*report.energy)), "flight").c_str());
+      has_area ? (", " + fixed(100 * surveyed.shown, 2) + " % shown for certain").c_str() : "");
+}
+
+/// The verdicts on the flights.
+void print_checks(const Surveyed& surveyed) {
+  for (const Flight& flight : surveyed.flights) {
+    if (surveyed.flights.size() > 1) {
+      std::printf("%s: ", flight.file.c_str());
+    }
+    print_check(flight.report);
+    if (flight.report.energy) {
+      std::printf("  energy: %s\n", flight.report.energy->in_words().c_str());
+    }
+  }
+  if (!surveyed.too_long.empty()) {
+    std::printf("%s\n", surveyed.too_long.c_str());
   }
 }
 
@@ -229,15 +157,7 @@ int survey(const SurveyArguments& arguments) {
   activity.reset();
   const std::unique_ptr<host::Unfinished> unfinished = created(folder);
   Interrupt interrupt;
-  Surveyed surveyed;
-  for (const double share : kDrawn) {
-    wish.survey->drawn = share;
-    first.emplace(wish, arguments.overrides.plugin_path);
-    surveyed = fly(arguments, *first, folder, interrupt);
-    if (interrupt.happened() || !surveyed.report || !may_be_nearer(*surveyed.report)) {
-      break;
-    }
-  }
+  const Surveyed surveyed = survey_in(folder, arguments, wish, first, interrupt);
   interrupt.finish();
   if (interrupt.happened()) {
     return kInterrupted;
@@ -259,7 +179,7 @@ int survey(const SurveyArguments& arguments) {
     return surveyed.result.exit_code();
   }
   write_page(folder, arguments);
-  if (!surveyed.report) {
+  if (surveyed.flights.empty()) {
     return kNoRoute;
   }
   const host::Camera& camera = wish.survey->camera;
@@ -267,19 +187,29 @@ int survey(const SurveyArguments& arguments) {
     std::cout << host::file_text(json_of(surveyed, *first, camera, folder));
   } else {
     print(surveyed, *first, camera);
-    std::printf("written: %s/: page.html, route.plan, result.json, scenario.yaml, pipeline.yaml\n",
-                folder.c_str());
-    print_check(*surveyed.report);
+    const std::size_t plans = surveyed.flights.size();
+    std::printf("written: %s/: page.html, %s, result.json, scenario.yaml, pipeline.yaml\n",
+                folder.c_str(),
+                plans == 1 ? "route.plan"
+                           : ("route-1.plan to route-" + std::to_string(plans) + ".plan").c_str());
+    print_checks(surveyed);
   }
-  return surveyed.report->passed() ? kDone : kNoRoute;
+  return surveyed.passed() ? kDone : kNoRoute;
 }
 }  // namespace
 
 void add_survey(App& app, Action& action) {
+  const auto prepare = [](SurveyArguments& given) {
+    if (!given.gsd_cm && !given.agl_m) {
+      throw UsageError{"--gsd-cm or --agl is required"};
+    }
+  };
   auto [command, arguments] = add_command<SurveyArguments>(
-      app, action, "survey", "photos of an area from above, without YAML", survey);
+      app, action, "survey", "photos of areas or along a line from above, without YAML", survey,
+      prepare);
   command
-      .add_option("area FILE", arguments.area, "one polygon, which may have holes (KML, GeoJSON)")
+      .add_option("area FILE", arguments.area,
+                  "polygons, which may have holes, or one line (KML, GeoJSON)")
       ->required();
   add_terrain(command, arguments);
   command
@@ -287,9 +217,12 @@ void add_survey(App& app, Action& action) {
                   "a camera that looks straight down, or a .yaml file with sensor_mm, image_px and "
                   "focal_mm")
       ->required();
-  command.add_option("--gsd-cm CM", arguments.gsd_cm, "what a pixel of a photo shows")
-      ->required()
-      ->check(number_from(0.01, 1000));
+  const auto* gsd =
+      command.add_option("--gsd-cm CM", arguments.gsd_cm, "what a pixel of a photo shows")
+          ->check(number_from(0.01, 1000));
+  command.add_option("--agl METRES", arguments.agl_m, "or the height above ground")
+      ->check(number_from(1, 1e4))
+      ->excludes(gsd);
   const auto percent = [&, &survey_command = command](const char* name, double& value, double low,
                                                       double high, const char* what) {
     survey_command.add_option(std::string(name) + " PERCENT", value, what)
@@ -301,6 +234,23 @@ void add_survey(App& app, Action& action) {
           "of a photo that one of the next line shows, too (default 70)");
   percent("--scale-tolerance", arguments.tolerance, 0.5, 50,
           "by which the scale may be off below the camera (default 5)");
+  const auto* offset =
+      command
+          .add_option("--offset METRES", arguments.offsets,
+                      "fly so far to the left of a line, negative: to its right; repeatable "
+                      "(default 0)")
+          ->check(number_from(-1e4, 1e4))
+          ->one_at_a_time()
+          ->take_all();
+  command
+      .add_option("--width METRES", arguments.width_m,
+                  "photograph so much on both sides of a line together")
+      ->check(number_from(0.1, 1e4))
+      ->excludes(offset);
+  command
+      .add_option("--flight-minutes MIN", arguments.flight_minutes,
+                  "longest flight; an area takes several if need be")
+      ->check(number_from(0.1, 1e4));
   command
       .add_option("--from LON,LAT", arguments.from,
                   "place of take-off and landing (default: the beginning of the first line)")

@@ -48,6 +48,17 @@ formats::Ring in_frame(const formats::Ring& lonlat, const Frame& frame) {
   return formats::without_repeats(ring);
 }
 
+/// What lies within a distance of a leg, but beyond its ends.
+formats::Ring beside(const formats::Point2& from, const formats::Point2& to, double distance) {
+  const double x = to[0] - from[0];
+  const double y = to[1] - from[1];
+  const double k = distance / std::hypot(x, y);
+  return {{from[0] + k * y, from[1] - k * x},
+          {to[0] + k * y, to[1] - k * x},
+          {to[0] - k * y, to[1] + k * x},
+          {from[0] - k * y, from[1] + k * x}};
+}
+
 double ring_m2(const formats::Ring& ring) {
   double twice = 0;
   for (std::size_t i = 2; i < ring.size(); ++i) {
@@ -110,9 +121,16 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
   if (wish_.survey) {
     lines_ = lines_of(*wish_.survey);
     heights_ = heights_of_photos(wish_, *lines_);
-    area_.outline = in_frame(wish_.survey->area.outline, corridor_.frame());
-    for (const formats::Ring& hole : wish_.survey->area.holes) {
-      area_.holes.push_back(in_frame(hole, corridor_.frame()));
+    for (const SurveyArea& area : wish_.survey->areas) {
+      formats::Polygon& own = areas_.emplace_back();
+      own.outline = in_frame(area.polygon.outline, corridor_.frame());
+      for (const formats::Ring& hole : area.polygon.holes) {
+        own.holes.push_back(in_frame(hole, corridor_.frame()));
+      }
+    }
+    line_ = in_frame(wish_.survey->line, corridor_.frame());
+    for (std::size_t i = 1; i < line_.size() && wish_.survey->width_m > 0; ++i) {
+      areas_.push_back({beside(line_[i - 1], line_[i], wish_.survey->width_m / 2), {}});
     }
   }
 }
@@ -266,7 +284,9 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
 std::string FirstRoute::ends() const {
   const std::string start = "start: " + point(wish_.points.front()) + "}\n";
   if (lines_) {
-    return (wish_.survey->has_start ? start : "") + survey_task();
+    const std::string back = "goal: " + point(wish_.points.front()) + ", tolerance_m: 1}\n";
+    const std::string task = survey_task();
+    return !wish_.survey->has_start ? task : line_.empty() ? start + task : start + back + task;
   }
   std::string text = start;
   const char* reached = ", tolerance_m: 1}\n";  // files of missions round points
@@ -280,30 +300,65 @@ std::string FirstRoute::ends() const {
 }
 
 std::string FirstRoute::survey_task() const {
-  std::string text = "task:\n  cover:\n    outline_m: " + text_of(area_.outline) + "\n";
-  if (!area_.holes.empty()) {
-    text += "    holes_m:\n";
-    for (const formats::Ring& hole : area_.holes) {
-      text += "      - " + text_of(hole) + "\n";
-    }
-    text += "    clearance_m: " + text_of(kCopterRadius + kFlownWithin + 0.01) + "\n";
-  }
   const auto number = [](double value) { return text_of(std::round(value * 1e6) / 1e6); };
-  return text + "    spacing_m: " + number(lines_->spacing_m) +
+  return "task:\n" +
+         (line_.empty() ? cover_task() + "    spacing_m: " + number(lines_->spacing_m)
+                        : follow_task()) +
          "\n    above_ground_m: " + number(lines_->above_ground_m) +
          "\n    tolerance_m: " + number(lines_->drawn_off_m(*wish_.survey)) + "\n";
 }
 
-double FirstRoute::area_m2() const {
-  double area = ring_m2(area_.outline);
-  for (const formats::Ring& hole : area_.holes) {
-    area -= ring_m2(hole);
+std::string FirstRoute::cover_task() const {
+  std::string text = "  cover:\n";
+  bool has_islands = false;
+  for (std::size_t i = 0; i < areas_.size(); ++i) {
+    const std::string lead = i == 0 ? "    " : "        ";
+    text += i == 1 ? "    more_areas:\n" : "";
+    if (areas_.size() > 1) {
+      const std::string& name = wish_.survey->areas[i].name;
+      text += (i == 0 ? lead : "      - ") + "name: " + exact_json_text(name) + "\n";
+    }
+    text += lead + "outline_m: " + text_of(areas_[i].outline) + "\n";
+    if (!areas_[i].holes.empty()) {
+      text += lead + "holes_m:\n";
+      for (const formats::Ring& hole : areas_[i].holes) {
+        text += lead + "  - " + text_of(hole) + "\n";
+      }
+      has_islands = true;
+    }
   }
-  return area;
+  if (has_islands) {
+    text += "    clearance_m: " + text_of(kCopterRadius + kFlownWithin + 0.01) + "\n";
+  }
+  if (wish_.survey->flight_s) {
+    text += "    capacity_s: " + text_of(std::floor(*wish_.survey->flight_s * 10) / 10) + "\n";
+  }
+  return text;
+}
+
+std::string FirstRoute::follow_task() const {
+  std::string offsets;
+  for (const double offset : offsets_of(*wish_.survey, *lines_)) {
+    offsets += (offsets.empty() ? "" : ", ") + text_of(std::round(offset * 1e6) / 1e6);
+  }
+  return "  follow:\n    line_m: " + text_of(line_) + "\n    offsets_m: [" + offsets + "]";
+}
+
+double FirstRoute::area_m2() const {
+  double sum = 0;
+  for (const formats::Polygon& area : areas_) {
+    sum += ring_m2(area.outline);
+    for (const formats::Ring& hole : area.holes) {
+      sum -= ring_m2(hole);
+    }
+  }
+  return sum;
 }
 
 double FirstRoute::length_m() const {
-  return corridor_.length_m() + (lines_ ? area_m2() / lines_->spacing_m : 0);
+  const double beside =
+      line_.empty() ? 0 : double(offsets_of(*wish_.survey, *lines_).size()) * corridor_.length_m();
+  return corridor_.length_m() + (lines_ ? beside + area_m2() / lines_->spacing_m : 0);
 }
 
 std::string FirstRoute::heights(double margin, const std::string& applies_to) const {
@@ -369,12 +424,26 @@ std::string FirstRoute::heights_in_words() const {
     return "photos: " + camera.name + ", " + in_metres(lines_->above_ground_m) +
            " above ground within " + in_metres(lines_->off_m) + ", each of " +
            in_metres(lines_->across_m) + " x " + in_metres(lines_->along_m) + ", every " +
-           in_metres(lines_->trigger_m) + " on lines " + in_metres(lines_->spacing_m) + " apart";
+           in_metres(lines_->trigger_m) + " " + lines_in_words();
   }
   return "heights: at least " + text_of(heights_.min_m) + " m above ground" +
          (heights_.is_min_lowered ? " (half of --max-agl)" : "") +
          (heights_.max_m ? ", at most " + text_of(*heights_.max_m) + " m" : "") +
          ", points without a height at " + text_of(heights_.ends_m) + " m";
+}
+
+std::string FirstRoute::lines_in_words() const {
+  if (line_.empty()) {
+    return "on lines " + in_metres(lines_->spacing_m) + " apart";
+  }
+  std::string text;
+  for (const double offset : offsets_of(*wish_.survey, *lines_)) {
+    text += (text.empty() ? "" : ", ") +
+            (offset == 0
+                 ? "over it"
+                 : in_metres(std::abs(offset)) + (offset > 0 ? " to the left" : " to the right"));
+  }
+  return "along the line: " + text;
 }
 
 std::string FirstRoute::over_voids(const Polyline& route) const {

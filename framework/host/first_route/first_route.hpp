@@ -36,7 +36,8 @@ class FirstRoute {
   std::string flown_scenario() const;
   /// Of a survey.
   const SurveyLines& lines() const { return lines_.value(); }
-  const formats::Polygon& area() const { return area_; }
+  /// In the frame; of a line with a width what lies beside each of its legs.
+  const std::vector<formats::Polygon>& areas() const { return areas_; }
   double area_m2() const;
   /// Where a route lies over voids of the models: a sentence, "" if nowhere.
   std::string over_voids(const Polyline& route) const;
@@ -50,6 +51,9 @@ class FirstRoute {
   /// Start, via points and goal; of a survey the start, if there is one, and the task.
   std::string ends() const;
   std::string survey_task() const;
+  std::string cover_task() const;
+  std::string follow_task() const;
+  std::string lines_in_words() const;
   /// Metres flown, about.
   double length_m() const;
   /// By how much the limits of height are narrower than wished for, as far as the points allow.
@@ -69,6 +73,7 @@ class FirstRoute {
   std::shared_ptr<Registry> registry_;
   Corridor corridor_;
   std::optional<SurveyLines> lines_;
-  formats::Polygon area_;  ///< of a survey, in the frame
+  std::vector<formats::Polygon> areas_;  ///< of a survey, in the frame
+  formats::Ring line_;                   ///< of a survey along one, in the frame
 };
 }  // namespace altiplan::host

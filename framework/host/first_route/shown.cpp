@@ -116,11 +116,14 @@ double highest_ground(const World& world, const Plane& place, double half) {
 }
 }  // namespace
 
-double share_shown(const formats::Polygon& area, const PhotoLines& photos, const World& world) {
+double share_shown(const std::vector<formats::Polygon>& areas, const PhotoLines& photos,
+                   const World& world) {
   constexpr double kMaxCells = 1e6;
   Box box = Box::empty();
-  for (const auto& [x, y] : area.outline) {
-    box = box.with({x, y, 0});
+  for (const formats::Polygon& area : areas) {
+    for (const auto& [x, y] : area.outline) {
+      box = box.with({x, y, 0});
+    }
   }
   const Vec3 size = box.max - box.min;
   const double cell =
@@ -132,7 +135,9 @@ double share_shown(const formats::Polygon& area, const PhotoLines& photos, const
     for (double x = box.min.x() + cell / 2; x < box.max.x(); x += cell) {
       const Plane place(x, y);
       const auto holds = [&](const formats::Ring& ring) { return ring_holds(ring, place); };
-      if (!holds(area.outline) || std::any_of(area.holes.begin(), area.holes.end(), holds)) {
+      if (std::none_of(areas.begin(), areas.end(), [&](const formats::Polygon& area) {
+            return holds(area.outline) && std::none_of(area.holes.begin(), area.holes.end(), holds);
+          })) {
         continue;
       }
       ++cells;

@@ -19,8 +19,9 @@ struct PhotoLines {
   double off_m = 0;  ///< by which the camera may be off the lines, in each direction
 };
 
-/// Share of an area, but its holes, that at least one photo shows for certain: wherever between its
+/// Share of areas, but their holes, that at least one photo shows for certain: wherever between its
 /// bounds the camera is, and with all ground of a cell of a grid at the height of its highest.
 /// Hills that hide ground from the side are not looked for.
-double share_shown(const formats::Polygon& area, const PhotoLines& photos, const World& world);
+double share_shown(const std::vector<formats::Polygon>& areas, const PhotoLines& photos,
+                   const World& world);
 }  // namespace altiplan::host

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/first_route/survey.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "altiplan/error.hpp"
@@ -22,7 +23,7 @@ SurveyLines lines_of(const SurveyWish& wish) {
   lines.max_mps =
       wish.camera.min_interval_s > 0 ? lines.trigger_m / wish.camera.min_interval_s : kInfinity;
   // A line covers what is within half a spacing of its end, too.
-  if (lines.along_m < lines.spacing_m) {
+  if (wish.line.empty() && lines.along_m < lines.spacing_m) {
     throw Error("--sidelap: lines " + with_digits(lines.spacing_m, 3) +
                 " m apart leave gaps at their ends, where a photo shows " +
                 with_digits(lines.along_m, 3) + " m along the flight: raise it to " +
@@ -31,33 +32,62 @@ SurveyLines lines_of(const SurveyWish& wish) {
   return lines;
 }
 
-formats::Polygon read_area(const std::filesystem::path& file) {
-  const std::string name = file.string();
+void read_places(SurveyWish& wish) {
+  const std::string name = wish.file.string();
   const std::string text = formats::read_file(name);
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  std::vector<formats::Polygon> found;
+  std::vector<formats::Ring> lines;
   std::vector<std::string> flat;
   if (first != text.npos && text[first] == '{') {
     const formats::GeoJson json = formats::read_geojson(name);
     for (const formats::GeoFeature& feature : json.features) {
-      found.push_back(feature.polygon);
+      wish.areas.push_back({feature.id, feature.polygon});
     }
+    lines = json.lines;
     flat = json.flat;
   } else {
     const formats::MissionFile map = formats::read_mission(name, text);
     for (const formats::Zone& zone : map.zones) {
       if (const formats::Polygon& polygon = zone.volumes.front().polygon;
           !polygon.outline.empty()) {
-        found.push_back(polygon);
+        wish.areas.push_back({zone.name, polygon});
+      }
+    }
+    if (wish.areas.empty() && map.route_problem.rfind("expected one", 0) == 0) {
+      throw Error(name + ": " + map.route_problem);
+    }
+    if (!map.items.empty()) {
+      formats::Ring& line = lines.emplace_back();
+      for (const formats::MissionItem& item : map.items) {
+        line.push_back({item.at.lon, item.at.lat});
       }
     }
     flat = map.flat;
   }
-  if (found.size() != 1) {
-    throw Error(name + ": expected one polygon (KML, GeoJSON), which may have holes, found " +
-                (flat.empty() ? counted(found.size(), "polygon")
-                              : "one without an area, " + formats::names_text(flat)));
+  std::string found;
+  if (!flat.empty()) {
+    found = "polygons without an area, " + formats::names_text(flat);
+  } else if (wish.areas.empty() && lines.size() != 1) {
+    found = lines.empty() ? "none" : std::to_string(lines.size()) + " lines";
+  } else if (wish.areas.empty()) {
+    wish.line = formats::without_repeats(lines.front());
+    found = wish.line.size() < 2 ? "a line without length" : "";
   }
-  return found.front();
+  if (!found.empty()) {
+    throw Error(name + ": expected polygons, which may have holes, or one line (KML, GeoJSON), " +
+                "found " + found);
+  }
+}
+
+std::vector<double> offsets_of(const SurveyWish& wish, const SurveyLines& lines) {
+  if (wish.width_m <= 0) {
+    return wish.offsets_m.empty() ? std::vector<double>{0} : wish.offsets_m;
+  }
+  const int count = std::max(1, int(std::ceil(wish.width_m / lines.spacing_m - 1e-9)));
+  std::vector<double> offsets;
+  for (int k = 0; k < count; ++k) {
+    offsets.push_back(wish.width_m * ((k + 0.5) / count - 0.5));
+  }
+  return offsets;
 }
 }  // namespace altiplan::host

@@ -2,24 +2,35 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "altiplan/formats/polygon.hpp"
 #include "host/first_route/camera.hpp"
 
 namespace altiplan::host {
 
-/// An area to be photographed from above.
+struct SurveyArea {
+  std::string name;          ///< as the file has it
+  formats::Polygon polygon;  ///< in longitude and latitude; holes are islands to keep out of
+};
+
+/// Areas, or a line, to be photographed from above.
 struct SurveyWish {
-  std::filesystem::path file;  ///< of the area
-  formats::Polygon area;       ///< in longitude and latitude; holes are islands to keep out of
+  std::filesystem::path file;
+  std::vector<SurveyArea> areas;
+  formats::Ring line;             ///< without areas: its corners, in longitude and latitude
+  std::vector<double> offsets_m;  ///< along lines so far to its left; negative: to its right
+  double width_m = 0;             ///< or along all lines that its surroundings take
   Camera camera;
   double gsd_m = 0.02;      ///< what a pixel shows
   double overlap = 0.75;    ///< shares of a photo that the next one shows too, along
   double sidelap = 0.7;     ///< and across the flight
   double tolerance = 0.05;  ///< share by which the scale of photos may be off
   double drawn = 0.6;       ///< share of that for the drawn route; the rest is for how it is flown
-  bool has_start = false;   ///< the first of the wish's points, else the area's corners alone
+  bool has_start = false;   ///< the first of the wish's points, else corners alone
+  std::optional<double> flight_s{};  ///< of areas: several flights, by estimate none longer
 };
 
 /// Heights and distances that give the photos, by the formulas of photogrammetry: metres and m/s.
@@ -37,6 +48,9 @@ struct SurveyLines {
 /// Throws Error, naming the option, where the photos at the ends of lines would leave gaps.
 SurveyLines lines_of(const SurveyWish& wish);
 
-/// The polygon of a file of one (KML, GeoJSON). Throws Error naming the file.
-formats::Polygon read_area(const std::filesystem::path& file);
+/// The polygons, or the one line, of its file (KML, GeoJSON). Throws Error naming the file.
+void read_places(SurveyWish& wish);
+
+/// Of lines along the wish's line.
+std::vector<double> offsets_of(const SurveyWish& wish, const SurveyLines& lines);
 }  // namespace altiplan::host

@@ -134,6 +134,9 @@ bool read_surroundings(const Json& feature, const std::string& id, const std::st
     }
   }
   for (const Ring& line : lines) {
+    if (type == "LineString" || type == "MultiLineString") {
+      to.lines.push_back(line);
+    }
     if (reach > 0) {
       for (Polygon& part : corridor_of(line, reach)) {
         to.surroundings.push_back({id, std::move(part), properties_of(feature)});

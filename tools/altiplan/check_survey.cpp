@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "check_survey.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "altiplan/error.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/qgc_survey.hpp"
+#include "commands.hpp"
+#include "host/import_export/plan.hpp"
+#include "host/result/result_json.hpp"
+
+namespace altiplan::cli {
+namespace {
+
+using host::Json;
+
+/// How far a copter may be off its lines, metres (WP_RADIUS_M, and a metre for stored numbers).
+constexpr double kOffLines = 3;
+
+/// Makes a plan's surveys again and compares them with its items.
+int check_made_again(const std::string& file, bool as_json) {
+  host::Json surveys = host::Json::array();
+  double differ_m = 0;
+  double coverage = 1;
+  bool are_equal = true;
+  for (const formats::qgc::SurveyMatch& match : formats::qgc::match_surveys(file)) {
+    const bool is_equal = match.problem.empty();
+    are_equal = are_equal && is_equal;
+    differ_m = std::max(differ_m, match.differ_m);
+    coverage = std::min(coverage, match.coverage);
+    surveys.push_back({{"item", match.place},
+                       {"items", match.commands},
+                       {"items_differ_m", is_equal ? host::Json(match.differ_m) : host::Json()},
+                       {"coverage", match.coverage},
+                       {"plane", match.plane},
+                       {"problem", match.problem}});
+    if (!as_json) {
+      std::printf("%s: %zu items, %s; lines cover %s %% of the area\n", match.place.c_str(),
+                  match.commands,
+                  is_equal ? ("as made again, to " + fixed(match.differ_m, 3) + " m").c_str()
+                           : match.problem.c_str(),
+                  fixed(100 * match.coverage, 2).c_str());
+    }
+  }
+  if (as_json) {
+    std::cout << host::file_text(
+        {{"surveys", surveys},
+         {"items_differ_m", are_equal ? host::Json(differ_m) : host::Json()},
+         {"coverage", coverage}});
+  }
+  constexpr double kAsMade = 0.1;  // metres
+  return are_equal && differ_m <= kAsMade ? kDone : kNoRoute;
+}
+
+/// The areas and the camera of a survey, without lines and their photos' distance.
+struct Written {
+  std::vector<formats::Polygon> areas;  ///< in the frame
+  host::PhotoLines photos;
+};
+
+formats::Ring ring_in(const Json& lonlat, const Frame& frame) {
+  formats::Ring ring;
+  for (const Json& corner : lonlat) {
+    const auto [x, y] = frame.to_local(corner.at(0).get<double>(), corner.at(1).get<double>());
+    ring.push_back({x, y});
+  }
+  return formats::without_repeats(ring);
+}
+
+/// Throws Error for a plan without one, or a damaged one.
+Written written_in(const std::string& file, const Frame& frame) {
+  const Json plan = Json::parse(formats::read_file(file), nullptr, false);
+  if (!plan.is_object() || !plan.contains("altiplan") || !plan["altiplan"].contains("survey")) {
+    throw Error(file +
+                ": expected a survey that altiplan survey has written (altiplan.survey); "
+                "surveys of QGroundControl are checked without --terrain");
+  }
+  const std::string place = file + ": altiplan.survey: ";
+  const Json& survey = plan["altiplan"]["survey"];
+  Written written;
+  try {
+    for (const Json& area : survey.at("areas")) {
+      formats::Polygon& polygon = written.areas.emplace_back();
+      polygon.outline = ring_in(area.at("outline"), frame);
+      for (const Json& hole : area.at("holes")) {
+        polygon.holes.push_back(ring_in(hole, frame));
+      }
+      if (const std::string problem = formats::polygon_problem(polygon); !problem.empty()) {
+        throw Error(place + "areas: " + problem);
+      }
+    }
+    const auto positive = [&](const char* key) {
+      const double value = survey.at(key).get<double>();
+      if (!(value > 0 && value < 1e6)) {
+        throw Error(place + key + ": expected a positive number");
+      }
+      return value;
+    };
+    written.photos = {{},
+                      0,
+                      positive("across_m") / positive("from_m") / 2,
+                      positive("along_m") / positive("from_m") / 2,
+                      kOffLines};
+  } catch (const Json::exception&) {
+    throw Error(place +
+                "expected areas with outline and holes in longitude and latitude, and "
+                "trigger_m, across_m, along_m and from_m");
+  }
+  if (written.areas.empty()) {
+    throw Error(place + "areas: expected one or more");
+  }
+  return written;
+}
+
+/// Lines along which the camera takes photos, a first one at once, and the greatest distance of
+/// these.
+void find_lines(const JudgedPlan& judged, host::PhotoLines& photos) {
+  const host::ImportedRoute& flown = judged.report.imported;
+  bool is_on = false;
+  std::size_t at = 0;
+  std::optional<Vec3> here;
+  for (const formats::MissionCommand& command : judged.mission.commands) {
+    if (command.number == host::Command::kCameraTrigger) {
+      is_on = command.params[0] > 0 && command.params[2] == 1 && here;
+      if (is_on) {
+        photos.lines.push_back({*here});
+        photos.trigger_m = std::max(photos.trigger_m, command.params[0]);
+      }
+    }
+    const auto found =
+        std::find_if(flown.items.begin() + std::ptrdiff_t(at), flown.items.end(),
+                     [&](const formats::MissionItem& item) { return item.place == command.place; });
+    if (found != flown.items.end()) {
+      at = std::size_t(found - flown.items.begin()) + 1;
+      here = flown.route[at - 1];
+      if (is_on) {
+        photos.lines.back().push_back(*here);
+      }
+    }
+  }
+}
+
+int check_shown(const std::string& file, const PlanCheck& options,
+                const host::Overrides& overrides) {
+  const JudgedPlan judged = judged_plan(options, overrides);
+  const World& world = judged.world.truth;
+  Written written = written_in(file, world.frame());
+  find_lines(judged, written.photos);
+  const double shown = host::share_shown(written.areas, written.photos, world);
+  if (options.json) {
+    std::cout << host::file_text({{"lines", written.photos.lines.size()}, {"coverage", shown}});
+  } else {
+    std::printf("%s: %zu stretches with the camera on, %s %% of the area shown for certain\n",
+                file.c_str(), written.photos.lines.size(), fixed(100 * shown, 2).c_str());
+  }
+  return kDone;
+}
+}  // namespace
+
+std::string with_survey(const std::string& plan, const host::FirstRoute& first,
+                        const Frame& frame) {
+  const auto lonlat = [&](const formats::Ring& ring) {
+    Json corners = Json::array();
+    for (const auto& [x, y] : ring) {
+      const auto [lon, lat] = frame.to_lonlat(x, y);
+      corners.push_back({lon, lat});
+    }
+    return corners;
+  };
+  Json areas = Json::array();
+  for (const formats::Polygon& area : first.areas()) {
+    Json holes = Json::array();
+    for (const formats::Ring& hole : area.holes) {
+      holes.push_back(lonlat(hole));
+    }
+    areas.push_back({{"outline", lonlat(area.outline)}, {"holes", holes}});
+  }
+  const host::SurveyLines& lines = first.lines();
+  Json json = Json::parse(plan);
+  json["altiplan"]["survey"] = {{"areas", areas},
+                                {"across_m", lines.across_m},
+                                {"along_m", lines.along_m},
+                                {"from_m", lines.above_ground_m}};
+  return json.dump(4, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+host::PhotoLines photo_lines(const host::SurveyLines& lines, std::vector<Polyline> along) {
+  const double per_m = 0.5 / lines.above_ground_m;
+  return {std::move(along), lines.trigger_m, per_m * lines.across_m, per_m * lines.along_m,
+          kOffLines};
+}
+
+int check_survey(const std::string& file, const PlanCheck& options,
+                 const host::Overrides& overrides) {
+  return options.terrain.empty() ? check_made_again(file, options.json)
+                                 : check_shown(file, options, overrides);
+}
+}  // namespace altiplan::cli
