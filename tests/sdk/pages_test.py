@@ -23,9 +23,10 @@ NOT_RUN = {
     r"altiplan-bench\b":
         "minutes of measuring, or on published maps; the tests bench_… run such programs",
     r"altiplan tune\b": "minutes; tests/tune tunes less",
-    r"altiplan report (?!quick\.db)": "of studies of minutes to hours, or of the reader's",
+    r"altiplan report (?!(quick|rooms)\.db)": "of studies of minutes to hours, or of the reader's",
     r"altiplan (study|merge|slurm|replay|compare) (study|part-1|before)\.":
         "study.yaml is the reader's; tests/study",
+    r"altiplan study configs/studies/barn-300": "of files that the reader fetches; study_scenario_sets",
     r"altiplan (fly result|view result\.flown)": "needs a vehicle; tests/link flies such results",
     r"altiplan edit ": "lasts as long as its page; viewer_edit opens one",
     r"altiplan view .*--png": "needs a browser; the tests viewer_… look at pictures",

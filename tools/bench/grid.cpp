@@ -8,8 +8,8 @@
 #include "altiplan/check.hpp"
 #include "altiplan/route.hpp"
 #include "host/config/config.hpp"
+#include "host/import_export/grid_scenarios.hpp"
 #include "measuring.hpp"
-#include "scenarios.hpp"
 #include "subcommand.hpp"
 
 namespace altiplan::bench {
@@ -111,7 +111,7 @@ PlanResult timed_plan(const Planner& planner, const Request& request, int repeat
   return result;
 }
 
-void run_scenario(const Planner& planner, Request& request, const GridScenario& scenario,
+void run_scenario(const Planner& planner, Request& request, const host::GridScenario& scenario,
                   const Arguments& arguments, Tally& tally) {
   const Environment& map = *request.world->layers().front().environment;
   request.start.position = *map.cell_centre(scenario.start);
@@ -143,14 +143,15 @@ Json plan_scenarios(host::Registry& registry, const Arguments& arguments) {
   const std::unique_ptr<Planner> planner = make_planner(registry, arguments);
   const auto world = std::make_shared<const World>(load_map(registry, arguments.map));
   const GridSpec spec = world->native_grid().value();
-  const GridScenarios scenarios = read_scenarios(arguments.scenarios, spec.counts, arguments.limit);
+  const host::GridScenarios scenarios =
+      host::read_grid_scenarios(arguments.scenarios, spec.counts, arguments.limit);
   if (scenarios.is_3d != (spec.counts[2] > 1)) {
     throw Error(arguments.scenarios + ": a .scen file goes with a .map, a .3dscen with a .3dmap");
   }
   Request request = request_for(world, spec, scenarios.is_3d);
   Tally tally;
   const std::size_t before = allocated();
-  for (const GridScenario& scenario : scenarios.list) {
+  for (const host::GridScenario& scenario : scenarios.list) {
     run_scenario(*planner, request, scenario, arguments, tally);
     // The planner's pool keeps its buffers at the size that they reached during the plan.
     tally.bytes = std::max(tally.bytes, allocated() - std::min(before, allocated()));

@@ -24,7 +24,8 @@ GROUPS = [
         "first-route", "first-plugin", "first-study", "reproduce-a-paper")]),
     ("How-to guides", [f"docs/how-to/{page}.md" for page in (
         "install", "survey-an-area", "view-results", "gallery", "exchange-missions", "flying", "tune-parameters",
-        "run-large-studies", "write-a-plugin", "plan-with-the-kit", "debug-a-plugin")]),
+        "published-scenarios", "run-large-studies", "write-a-plugin", "plan-with-the-kit",
+        "debug-a-plugin")]),
     ("Reference", [*(f"docs/reference/{page}.md" for page in (
         "cli", "files", "objectives", "performance", "result", "route-formats", "plugins", "studies", "report", "statistics", "run-outcomes",
         "study-database", "check-plugin", "conformance", "abi", "api")), "framework/python/README.md"]),

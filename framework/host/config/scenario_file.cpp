@@ -512,5 +512,10 @@ void ScenarioFile::describe(Fields& f) {
   f("objective", objective)
       .doc("what routes minimise, unless the pipeline says so; default: length");
   f("metrics", metrics).doc("objectives that routes are measured by");
+  f("reference", reference)
+      .at_least(0)
+      .doc(
+          "published cost of the best route, by the objective: results have it, and studies the "
+          "gap");
 }
 }  // namespace altiplan::host

@@ -320,6 +320,7 @@ struct ScenarioFile {
   std::vector<ConstraintEntry> constraints;
   std::optional<ObjectiveEntry> objective;
   std::vector<MetricEntry> metrics;
+  std::optional<double> reference;
   void describe(Fields& f);
 };
 

@@ -314,6 +314,9 @@ Json result_json(const Config& config, const RunResult& result) {
   json["metrics"] = run_metrics(config, result);
   json["check"] = accepted ? to_json(*accepted->check) : Json(nullptr);
   json.update(to_json(accepted ? accepted->cost : std::nullopt));
+  if (config.scenario.reference) {
+    json["reference"] = *config.scenario.reference;
+  }
   if (result.task) {
     json["task"] = {{"plugin", config.scenario.task->plugin},
                     {"passes", result.task->passes.size()},

@@ -43,6 +43,7 @@ constexpr Key kResult[] = {
     {"folder", kText},
     {"cost", kNumber | kNull},
     {"bound", kNumber | kNull},
+    {"reference", kNumber},
     {"task", kObject},
 };
 constexpr Key kFile[] = {{"path", kText}, {"sha256", kText}};

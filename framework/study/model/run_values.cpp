@@ -35,6 +35,15 @@ class Values {
       all_[prefix + "gap"] = host::Cost{cost.get<double>(), bound.get<double>()}.gap();
     }
   }
+  /// The published cost of the best route, and by what share of it the route costs more.
+  void add_reference(const host::Json& result) {
+    const host::Json reference = result.value("reference", host::Json());
+    const host::Json cost = result.value("cost", host::Json());
+    add("reference", reference);
+    if (reference.is_number() && reference.get<double>() > 0 && cost.is_number()) {
+      all_["reference_gap"] = cost.get<double>() / reference.get<double>() - 1;
+    }
+  }
   /// Sums over all replans: their time (s), and each of their counters.
   void add_replans(const host::Json& replans) {
     add("flight.replans", replans.size());
@@ -71,6 +80,7 @@ RunValues values_of(const host::Json& result) {
   values.add_each("", result.at("metrics"));
   values.add("setup_time_s", result.at("setup_time_s"));
   values.add_cost("", result);
+  values.add_reference(result);
   for (const host::Json& step : result.at("steps")) {
     const std::string prefix = "steps." + step.at("id").get<std::string>() + ".";
     values.add_each(prefix + "counters.", step.at("counters"));
@@ -99,9 +109,11 @@ std::string why_no_value(const std::string& name, const std::vector<std::string>
   static const std::vector<std::string> kOfRoute = keys_of(host::to_json(Measures{}));
   static const std::vector<std::string> kOfRun =
       joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
-                        "wall_time_s", "cpu_time_s", "peak_memory_mb", "cost", "bound", "gap"});
-  static const std::vector<std::string> kOfStep = joined(
-      kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit", "cost", "bound", "gap"});
+                        "wall_time_s", "cpu_time_s", "peak_memory_mb", "cost", "bound", "gap",
+                        "reference", "reference_gap"});
+  static const std::vector<std::string> kOfStep =
+      joined(kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit", "cost",
+                        "bound", "gap"});
   static const std::vector<std::string> kOfFlight =
       joined(joined(kOfRoute, kOfFlightAlone), {"replans", "replan_time_s", "handovers"});
   const std::size_t last = name.rfind('.');

@@ -16,7 +16,9 @@ namespace altiplan::study {
 struct ScenarioChoice {
   std::string id;  ///< default: the file's stem
   Path file;
-  Value set;  ///< keys of the scenario over their values: one, a list, or FROM..TO
+  std::optional<Path> from;  ///< a published set, whose scenarios vary the file
+  int every = 1;             ///< of the set the first, and each so many after it
+  Value set;                 ///< keys of the scenario over their values: one, a list, or FROM..TO
   void describe(Fields& f);
 };
 

@@ -91,6 +91,53 @@ std::string set_twice(const Value& set) {
   return "";
 }
 
+/// Each cell of `set` with each scenario of a published set, if there is one.
+std::vector<GridCell> cells_of(const Value& set, const std::vector<host::SetScenario>& published,
+                               const std::string& path) {
+  const std::vector<GridCell> cells = grid_of(set, path + ".set");
+  if (published.empty()) {
+    return cells;
+  }
+  for (const Value::Entry& entry : set.entries) {
+    for (const auto& [key, value] : published.front().set) {
+      if ((key + ".").starts_with(entry.key + ".") || entry.key.starts_with(key + ".")) {
+        throw ConfigError(entry.where, path + ".set." + entry.key,
+                          "sets '" + key + "', which each scenario of 'from' does");
+      }
+    }
+  }
+  std::vector<GridCell> all;
+  for (const host::SetScenario& scenario : published) {
+    for (const GridCell& cell : cells) {
+      all.push_back(
+          {"[" + scenario.label + (cell.label.empty() ? "]" : "," + cell.label.substr(1)), {}});
+      for (const auto& [key, value] : scenario.set) {
+        all.back().assignments.push_back({key, value, "", set.where});
+      }
+      all.back().assignments.insert(all.back().assignments.end(), cell.assignments.begin(),
+                                    cell.assignments.end());
+    }
+  }
+  return all;
+}
+
+/// The chosen scenarios of the entry's published set; reports a problem if it cannot be read.
+std::vector<host::SetScenario> published_by(const ScenarioChoice& entry, const Location& where,
+                                            const std::string& path, StudyProblems& problems) {
+  std::vector<host::SetScenario> chosen;
+  try {
+    std::vector<host::SetScenario> all = host::read_scenario_set(entry.from->text);
+    for (std::size_t n = 0; n < all.size(); n += std::size_t(entry.every)) {
+      chosen.push_back(std::move(all[n]));
+    }
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const Error& error) {
+    problems.add(where, path + ".from", error.what());
+  }
+  return chosen;
+}
+
 /// True if the file exists; reports a problem if not.
 bool is_file(StudyProblems& problems, const Path& file, const Location& where,
              const std::string& key) {
@@ -115,7 +162,11 @@ void read_scenarios(StudyPlan& plan, const Value& tree, StudyProblems& problems,
     if (is_file(problems, entry.file, host::place_of(at, "file"), path + ".file")) {
       const std::string of =
           entry.id.empty() ? fs::path(entry.file.text).stem().string() : entry.id;
-      variants.add(plan.scenarios, of, entry.file, entry.set, "scenario.", path, at.where);
+      const std::vector<host::SetScenario> published =
+          entry.from ? published_by(entry, host::place_of(at, "from"), path, problems)
+                     : std::vector<host::SetScenario>();
+      variants.add(plan.scenarios, of, entry.file, entry.set, "scenario.", path, at.where,
+                   published);
     }
   }
 }
@@ -267,7 +318,7 @@ void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& probl
 
 void StudyVariants::add(std::vector<Variant>& all, const std::string& of, const Path& file,
                         const Value& set, const std::string& prefix, const std::string& path,
-                        const Location& where) {
+                        const Location& where, const std::vector<host::SetScenario>& published) {
   if (!ids_.insert(prefix + of).second) {
     problems_.add(where, path, "the name '" + of + "' is taken: give this entry another id");
     return;
@@ -276,7 +327,7 @@ void StudyVariants::add(std::vector<Variant>& all, const std::string& of, const 
     problems_.add(set.where, path + ".set", twice);
   }
   try {
-    for (const GridCell& cell : grid_of(set, path + ".set")) {
+    for (const GridCell& cell : cells_of(set, published, path)) {
       Variant variant{of + cell.label, of, fs::absolute(file.text).lexically_normal(), {}};
       for (const Assignment& assignment : cell.assignments) {
         const std::string text = prefix + assignment.key + "=" + assignment.value;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/import_export/scenario_set.hpp"
 #include "study/plan/study_plan.hpp"
 
 namespace altiplan::study {
@@ -39,9 +40,11 @@ class StudyVariants {
  public:
   explicit StudyVariants(StudyProblems& problems) : problems_(problems) {}
 
-  /// `prefix` is prepended to each key: "scenario." for scenarios.
+  /// `prefix` is prepended to each key: "scenario." for scenarios. Each cell of `set` is combined
+  /// with each of a published set, if there is one.
   void add(std::vector<Variant>& all, const std::string& of, const Path& file, const Value& set,
-           const std::string& prefix, const std::string& path, const Location& where);
+           const std::string& prefix, const std::string& path, const Location& where,
+           const std::vector<host::SetScenario>& published = {});
 
   /// Keeps the location of an assignment made by the study itself.
   void remember(const std::string& assignment, const Location& where, const std::string& key) {

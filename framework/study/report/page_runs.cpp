@@ -58,6 +58,17 @@ Table scenario_table(const Content& content) {
       table.columns.push_back({pipeline + ": " + metric_label(metric), true});
     }
   }
+  // The published cost of the best route is the same for all runs of a scenario.
+  const std::size_t reference = data.column("reference");
+  std::vector<double> references(data.scenarios.size(), kNone);
+  for (const RunRow& row : data.rows) {
+    if (reference < row.values.size()) {
+      references[row.scenario] = row.values[reference];
+    }
+  }
+  if (reference < data.columns.size()) {
+    table.columns.push_back({"reference", true});
+  }
   const auto tallies = tallies_of(data, metric);
   for (std::size_t s = 0; s < data.scenarios.size(); ++s) {
     std::vector<Cell> cells{data.scenarios[s].name};
@@ -68,6 +79,9 @@ Table scenario_table(const Content& content) {
         const double value = median(tally.values);
         cells.emplace_back(readable_value(metric, value), value);
       }
+    }
+    if (reference < data.columns.size()) {
+      cells.emplace_back(readable(references[s]), references[s]);
     }
     table.rows.push_back(std::move(cells));
   }

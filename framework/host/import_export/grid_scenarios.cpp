@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scenarios.hpp"
+#include "host/import_export/grid_scenarios.hpp"
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string>
 
 #include "altiplan/error.hpp"
+#include "altiplan/formats/input_file.hpp"
 
-namespace altiplan::bench {
+namespace altiplan::host {
 namespace {
 
 std::vector<std::string> words_of(const std::string& line) {
@@ -95,17 +95,44 @@ GridScenario space_scenario(const Row& row, const std::array<int, 3>& counts) {
 }
 }  // namespace
 
-GridScenarios read_scenarios(const std::filesystem::path& file, const std::array<int, 3>& counts,
-                             std::size_t limit) {
+std::array<int, 3> grid_counts(const std::filesystem::path& map) {
+  formats::InputFile in(map.string());
+  const bool is_3d = map.extension() == ".3dmap";
+  std::array<int, 3> counts{0, 0, is_3d ? 0 : 1};
+  std::string line;
+  for (int number = 1; number <= (is_3d ? 1 : 4) && std::getline(in, line); ++number) {
+    const Row row(map.string() + ":" + std::to_string(number), words_of(line));
+    const auto set = [&](std::size_t axis, std::size_t column) {
+      const double count = row.number(column, "a number of cells");
+      if (count != std::floor(count) || count < 1 || count > 1e9) {
+        row.refuse("expected a number of cells, found " + row.text(column));
+      }
+      counts[axis] = int(count);
+    };
+    if (is_3d && row.size() == 4 && row.text(0) == "voxel") {
+      for (const std::size_t axis : {0, 1, 2}) {
+        set(axis, axis + 1);
+      }
+    } else if (!is_3d && row.size() == 2 && row.text(0) == "width") {
+      set(0, 1);
+    } else if (!is_3d && row.size() == 2 && row.text(0) == "height") {
+      set(1, 1);
+    }
+  }
+  if (counts[0] == 0 || counts[1] == 0 || counts[2] == 0) {
+    throw Error(map.string() + ": expected a map, which begins with its size");
+  }
+  return counts;
+}
+
+GridScenarios read_grid_scenarios(const std::filesystem::path& file,
+                                  const std::array<int, 3>& counts, std::size_t limit) {
   GridScenarios scenarios;
   scenarios.is_3d = file.extension() == ".3dscen";
   if (!scenarios.is_3d && file.extension() != ".scen") {
     throw Error(file.string() + ": expected a .scen or a .3dscen file");
   }
-  std::ifstream in(file);
-  if (!in) {
-    throw Error(file.string() + ": cannot be read");
-  }
+  formats::InputFile in(file.string());
   int number = 0;
   for (std::string line; scenarios.list.size() < limit && std::getline(in, line);) {
     ++number;
@@ -125,4 +152,4 @@ GridScenarios read_scenarios(const std::filesystem::path& file, const std::array
   }
   return scenarios;
 }
-}  // namespace altiplan::bench
+}  // namespace altiplan::host
