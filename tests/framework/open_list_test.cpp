@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <vector>
 
 #include "altiplan/random.hpp"
 
@@ -50,6 +54,33 @@ TEST(OpenList, MixedPushesAndPopsGiveTheLeast) {
       const auto least = std::min_element(inside.begin(), inside.end());
       ASSERT_NEAR(open.pop().f, *least * 1e9, 1);
       inside.erase(least);
+    }
+  }
+}
+
+TEST(OpenList, ManyEntriesComeOutInOrder) {
+  using Key = std::tuple<double, double, std::uint32_t>;
+  for (const int values : {1, 3, 300, 1'000'000'000}) {  // with fewer, more are equal
+    SplitMix64 random(3);
+    OpenList open;
+    open.clear(1);
+    std::priority_queue<Key, std::vector<Key>, std::greater<>> expected;
+    double least = 0;
+    for (std::uint32_t turn = 0; turn < 300'000 || !expected.empty(); ++turn) {
+      if (turn < 300'000 && (expected.empty() || random.uniform() < 0.6)) {
+        // As in a search: most are after the last one popped, some before it.
+        const double f = std::max(0.0, least + random.integer(-1, values));
+        const double g = random.integer(0, 5);
+        open.push(f, g, turn);
+        expected.emplace(f, -g, turn);
+      } else {
+        const auto [f, minus_g, node] = expected.top();
+        expected.pop();
+        ASSERT_EQ(open.top().node, node);
+        ASSERT_EQ(open.pop().f, f);
+        least = f;
+      }
+      ASSERT_EQ(open.size(), expected.size());
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include "altiplan/constraint.hpp"
 #include "altiplan/environment.hpp"
+#include "altiplan/kit/layers/mean_cost.hpp"
 #include "altiplan/objective.hpp"
 #include "host/base/shapes.hpp"
 
@@ -10,9 +11,10 @@ namespace altiplan::host {
 namespace {
 
 /// Length as an objective among others; alone it is the default, which no object stands for.
-class Length final : public Objective {
+class Length final : public Objective, public kit::MeanCost {
  public:
   Length(const NoParams&, const Site&) {}
+  double per_metre(const Vec3&, const Vec3&) const override { return 1; }
 
  private:
   double do_cost(const Leg& leg, double, const Request&) const override { return leg.length(); }

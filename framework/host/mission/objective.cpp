@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/mission/objective.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/mean_cost.hpp"
 #include "altiplan/total_limit.hpp"
 #include "host/base/built_in.hpp"
 #include "host/config/config_check.hpp"
@@ -13,13 +15,16 @@ namespace altiplan::host {
 namespace {
 
 /// Costs times weights, added up. A sum of consistent bounds is consistent.
-class WeightedSum final : public Objective {
+class WeightedSum : public Objective {
  public:
   struct Term {
     double weight;
     std::shared_ptr<const Objective> objective;
   };
   explicit WeightedSum(std::vector<Term> terms) : terms_(std::move(terms)) {}
+
+ protected:
+  const std::vector<Term>& terms() const { return terms_; }
 
  private:
   double do_cost(const Leg& leg, double time_s, const Request& request) const override {
@@ -78,6 +83,33 @@ class WeightedSum final : public Objective {
   std::vector<Term> terms_;
 };
 
+/// The same of terms that all are means.
+class WeightedMean final : public WeightedSum, public kit::MeanCost {
+ public:
+  /// None if a term is no mean.
+  static std::shared_ptr<const Objective> of(const std::vector<Term>& terms) {
+    auto sum = std::make_shared<WeightedMean>(terms);
+    for (const Term& term : terms) {
+      sum->means_.push_back(dynamic_cast<const kit::MeanCost*>(term.objective.get()));
+    }
+    const bool are_means =
+        std::find(sum->means_.begin(), sum->means_.end(), nullptr) == sum->means_.end();
+    return are_means ? sum : nullptr;
+  }
+  using WeightedSum::WeightedSum;
+
+  double per_metre(const Vec3& from, const Vec3& to) const override {
+    double sum = 0;
+    for (std::size_t i = 0; i < means_.size(); ++i) {
+      sum += terms()[i].weight * means_[i]->per_metre(from, to);
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<const kit::MeanCost*> means_;
+};
+
 std::shared_ptr<const Objective> make_objective(const Config& config, const std::string& name,
                                                 const Value& parameters, const Site& site,
                                                 const std::string& key) {
@@ -90,7 +122,8 @@ std::shared_ptr<const Objective> make_objective(const Config& config, const std:
       terms.push_back({term.weight, make_objective(config, term.plugin, term.parameters, site,
                                                    item(key + ".of", i) + "." + term.plugin)});
     }
-    return std::make_shared<WeightedSum>(std::move(terms));
+    const std::shared_ptr<const Objective> mean = WeightedMean::of(terms);
+    return mean != nullptr ? mean : std::make_shared<WeightedSum>(std::move(terms));
   }
   try {
     std::shared_ptr<const Objective> made =

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/mean_cost.hpp"
 #include "exposure_worlds_test.hpp"
 
 namespace altiplan::exposure_test {
@@ -51,6 +52,22 @@ TEST(Exposure, EqualsFineSampling) {
       // A sample on the other side of a border to no value is off by a whole piece's length.
       EXPECT_NEAR(exposure->cost(leg, 0, request), expected, 2e-4 * expected + 0.02);
     }
+  }
+}
+
+TEST(Exposure, AMetreCostsTheSameAtAllHeights) {
+  SplitMix64 draws(6);
+  RandomStream random(7);
+  const Request request = testing::request_in({}, {0, 0, 0}, {100, 0, 0}, kAround);
+  for (int n = 0; n < 200; ++n) {
+    const auto exposure = objective_of(random_values(draws, n % 2 == 0), ", elsewhere: 3");
+    const auto* mean = dynamic_cast<const kit::MeanCost*>(exposure.get());
+    ASSERT_NE(mean, nullptr);
+    const Vec3 a = random.in(kAround);
+    const Vec3 b = n % 10 == 0 ? Vec3(a + Vec3(0, 0, 7)) : random.in(kAround);
+    const double cost = exposure->cost(Leg::straight(a, b), 0, request);
+    const double above = mean->per_metre({a.x(), a.y(), 500}, {b.x(), b.y(), -3});
+    EXPECT_NEAR((b - a).norm() * above, cost, 1e-12 * cost);
   }
 }
 

@@ -49,6 +49,9 @@ class Search : kit::GoalSearch {
         return with(route_to(goal_parent_, true), goal_g_, true, false);
       }
       Node& node = nodes_[index];
+      if (!open_.empty()) {
+        nodes_.prefetch(open_.top().node);
+      }
       if (node.closed) {
         continue;
       }
@@ -91,6 +94,16 @@ class Search : kit::GoalSearch {
     }
   }
 
+  /// Begins to fetch the cell's nodes and those around it, which a search over many cells finds in
+  /// none of the processor's caches.
+  void prefetch_around(std::uint32_t index) const {
+    constexpr kit::DirectionMask kAcross =
+        kit::directions_where([](const Cell& o) { return o[0] == 0; });
+    for (kit::DirectionMask left = kAcross; left != 0; left &= left - 1) {
+      nodes_.prefetch(std::size_t(index + lattice_.stride(__builtin_ctz(left))));
+    }
+  }
+
   void reach(std::uint32_t index, double g, double length, int in) {
     Node& node = nodes_.at(index, kFresh);
     node.g = g;
@@ -111,6 +124,7 @@ class Search : kit::GoalSearch {
   }
 
   void expand(std::uint32_t index, Node& node) {
+    prefetch_around(index);
     const Cell c = lattice_.cell(index);
     const Vec3 here = node.in == kit::kHere && at_start_ ? start_ : lattice_.position(c);
     const std::optional<Approach> from = before(node.in, here);
@@ -133,11 +147,11 @@ class Search : kit::GoalSearch {
     for (kit::DirectionMask open = rules_.candidates(c, node.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
       const Node& successor = nodes_.at(std::uint32_t(index + lattice_.stride(d)), kFresh);
-      if (successor.closed) {
+      if (successor.closed || successor.g <= node.g) {
         continue;
       }
       const Vec3 there = lattice_.position(cell_at(d));
-      const double g = g_to[std::size_t(d)] = node.g + step_cost(d, here, there);
+      const double g = g_to[std::size_t(d)] = node.g + step_cost(c, d, here, there);
       const bool is_better = g < successor.g &&
                              !too_long(length_here + lattice_.step_length(d), there) &&
                              !exceeds_incumbent(g, there);
@@ -160,7 +174,8 @@ class Search : kit::GoalSearch {
 
   /// Memory of this search, not the size to which the pool has grown.
   bool memory_full() const {
-    return lattice_.size() * sizeof(Node) + open_.size() * sizeof(kit::OpenList::Entry) >
+    return lattice_.size() * sizeof(Node) + open_.size() * sizeof(kit::OpenList::Entry) +
+               means_bytes() >
            settings_.max_bytes;
   }
 

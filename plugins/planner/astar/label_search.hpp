@@ -200,7 +200,7 @@ class LabelSearch : kit::GoalSearch {
     for (kit::DirectionMask open = rules_.candidates(c, label.in); open != 0; open &= open - 1) {
       const int d = __builtin_ctz(open);
       const Vec3 there = lattice_.position(cell_at(c, d));
-      const double g = g_to[std::size_t(d)] = label.g + step_cost(d, here, there);
+      const double g = g_to[std::size_t(d)] = label.g + step_cost(c, d, here, there);
       kept |= kit::DirectionMask(!exceeds_incumbent(g, there)) << d;
     }
     kept = kept == 0 ? 0 : rules_.legs_free(from, c, here, kept);
@@ -227,7 +227,7 @@ class LabelSearch : kit::GoalSearch {
   bool memory_full() const {
     const std::size_t of_label = sizeof(Label) + resources_.size() * sizeof(double);
     return first_of_.size() * sizeof(std::uint32_t) + labels_.size() * of_label +
-               open_.size() * sizeof(kit::OpenList::Entry) + rules_.bytes() >
+               open_.size() * sizeof(kit::OpenList::Entry) + rules_.bytes() + means_bytes() >
            settings_.max_bytes;
   }
 

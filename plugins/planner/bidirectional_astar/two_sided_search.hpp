@@ -247,12 +247,13 @@ class TwoSidedSearch : kit::LatticeSearch {
     const Cell to = {c[0] + sign * o[0], c[1] + sign * o[1], c[2] + sign * o[2]};
     const Vec3 there = lattice_.position(to);
     const bool reversed = side == backward && request_.objective;
-    Arrival next = {arrival.g + (reversed ? step_cost(d, there, here) : step_cost(d, here, there)),
-                    arrival.length + lattice_.step_length(d),
-                    std::uint32_t(std::int64_t(arrival.cell) + sign * lattice_.stride(d)),
-                    index,
-                    kNone,
-                    std::uint8_t(step)};
+    Arrival next = {
+        arrival.g + (reversed ? step_cost(to, d, there, here) : step_cost(c, d, here, there)),
+        arrival.length + lattice_.step_length(d),
+        std::uint32_t(std::int64_t(arrival.cell) + sign * lattice_.stride(d)),
+        index,
+        kNone,
+        std::uint8_t(step)};
     if (next.g == kInfinity || is_too_long(side, next.length, there) ||
         !is_better(settings_.weight_g * (next.g + estimate(side).at_least(there)))) {
       return;

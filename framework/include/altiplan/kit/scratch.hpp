@@ -88,6 +88,8 @@ class NodeStore {
   Node& operator[](std::size_t i) { return nodes_.get()[i]; }
   const Node& operator[](std::size_t i) const { return nodes_.get()[i]; }
   std::size_t bytes() const { return count_ * sizeof(Node); }
+  /// Begins to fetch a node, if there is one of that number, into the processor's cache.
+  void prefetch(std::size_t i) const { __builtin_prefetch(nodes_.get() + std::min(i, count_ - 1)); }
 
  private:
   struct Free {

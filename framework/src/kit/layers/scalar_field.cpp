@@ -48,11 +48,16 @@ namespace {
 class Lines {
  public:
   Lines(double from, double to, int count) : from_(from), along_(to - from) {
-    const double last = count - 1;
-    line_ = along_ > 0 ? std::max(0.0, std::floor(from) + 1) : std::min(last, std::ceil(from) - 1);
-    left_ = along_ > 0   ? int(std::max(0.0, std::min(last, std::ceil(to)) - line_ + 1))
-            : along_ < 0 ? int(std::max(0.0, line_ - std::max(0.0, std::floor(to)) + 1))
-                         : 0;
+    const auto within = [&](double at) { return std::clamp(at, -1.0, double(count)); };
+    const double begin = within(from);
+    const double end = within(to);
+    if (along_ > 0) {
+      line_ = std::max(0, floor(begin) + 1);
+      left_ = std::min(count - 1, ceil(end)) - line_ + 1;
+    } else if (along_ < 0) {
+      line_ = std::min(count - 1, ceil(begin) - 1);
+      left_ = line_ - std::max(0, floor(end)) + 1;
+    }
     find_next();
   }
   /// Infinite after the last one.
@@ -64,18 +69,21 @@ class Lines {
   }
 
  private:
+  // Those of the library are calls.
+  static int floor(double at) { return int(at) - (int(at) > at ? 1 : 0); }
+  static int ceil(double at) { return int(at) + (int(at) < at ? 1 : 0); }
   void find_next() { next_ = left_ > 0 ? (line_ - from_) / along_ : kInfinity; }
 
   double from_;
   double along_;
-  double line_;
   double next_;
-  int left_;
+  int line_ = 0;
+  int left_ = 0;
 };
 }  // namespace
 
-inline double ScalarField::mean(const std::array<double, 2>& from,
-                                const std::array<double, 2>& to) const {
+inline double ScalarField::mean_within(const std::array<double, 2>& from,
+                                       const std::array<double, 2>& to) const {
   const std::array<double, 2> middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2};
   std::array<int, 2> cell{};
   for (const std::size_t axis : {0U, 1U}) {
@@ -99,16 +107,21 @@ inline double ScalarField::mean(const std::array<double, 2>& from,
   return std::max(0.0, sw + u * (se - sw) + v * (nw - sw) + uv * (sw - se - nw + ne));
 }
 
-double ScalarField::integral(const Vec3& a, const Vec3& b) const {
-  const double length = (b - a).norm();
-  if (length == 0) {
-    return 0;
-  }
+inline bool ScalarField::are_in_one_cell(const std::array<double, 2>& a,
+                                         const std::array<double, 2>& b) const {
+  return std::min({a[0], a[1], b[0], b[1]}) >= 0 && std::max(a[0], b[0]) < counts_[0] &&
+         std::max(a[1], b[1]) < counts_[1] && int(a[0]) == int(b[0]) && int(a[1]) == int(b[1]);
+}
+
+double ScalarField::mean(const Vec3& a, const Vec3& b) const {
   const std::array<double, 2> from = in_cells(a);
   const std::array<double, 2> to = in_cells(b);
   const auto at = [&](double t) {
     return std::array{from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])};
   };
+  if (are_in_one_cell(from, to)) {
+    return mean_within(from, to);
+  }
   std::array<Lines, 2> lines{Lines(from[0], to[0], counts_[0]), Lines(from[1], to[1], counts_[1])};
   double sum = 0;
   std::array<double, 2> here = from;
@@ -118,12 +131,12 @@ double ScalarField::integral(const Vec3& a, const Vec3& b) const {
     lines[axis].advance();
     if (end > t) {
       const std::array<double, 2> there = end < 1 ? at(end) : to;
-      sum += (end - t) * mean(here, there);
+      sum += (end - t) * mean_within(here, there);
       here = there;
       t = end;
     }
   }
-  return length * sum;
+  return sum;
 }
 
 double ScalarField::minimum_up_to(std::size_t axis, double at) const {

@@ -168,7 +168,7 @@ class HeadingSearch : GoalSearch {
       const Cell o = offset(d);
       const Cell to = {c[0] + o[0], c[1] + o[1], c[2] + o[2]};
       const Vec3 there = lattice_.position(to);
-      const double g = g_here + step_cost(d, here, there);
+      const double g = g_here + step_cost(c, d, here, there);
       const double length = length_here + lattice_.step_length(d);
       if (too_long(length, there) || exceeds_incumbent(g, there)) {
         continue;
@@ -189,7 +189,7 @@ class HeadingSearch : GoalSearch {
   /// Memory of this search, not the capacity that the pool has grown to.
   bool memory_full() const {
     return cells_.bytes() + arrivals_.size() * sizeof(Arrival) +
-               open_.size() * sizeof(OpenList::Entry) + rules_.bytes() >
+               open_.size() * sizeof(OpenList::Entry) + rules_.bytes() + means_bytes() >
            settings_.max_bytes;
   }
 

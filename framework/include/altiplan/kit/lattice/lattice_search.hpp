@@ -11,6 +11,7 @@
 #include "altiplan/kit/lattice/move_rules.hpp"
 #include "altiplan/kit/lattice/route_costs.hpp"
 #include "altiplan/kit/lattice/step_costs.hpp"
+#include "altiplan/kit/lattice/step_means.hpp"
 #include "altiplan/planner.hpp"
 
 /// \file Common parts of best-first searches over the cells of a lattice: their settings, the
@@ -324,6 +325,7 @@ class LatticeSearch {
         lattice_(lattice),
         rules_(request, lattice, settings.moves, settings.corner),
         costs_(settings.cost, request, lowest(request, lattice)),
+        means_(StepMeans::of(request, lattice)),
         to_goal_(request, settings, lattice, request.goal.position, request.goal.tolerance_m,
                  costs_.min_per_metre()),
         watch_(request.budget),
@@ -350,10 +352,13 @@ class LatticeSearch {
   double evaluation(double g, const Cell& c, const Vec3& at) const {
     return settings_.weight_g * (g + costs_.at(at)) + settings_.weight_h * to_goal_(c);
   }
-  double step_cost(int d, const Vec3& a, const Vec3& b) const {
+  /// Of the step in direction d from a, the position of cell c, to b.
+  double step_cost(const Cell& c, int d, const Vec3& a, const Vec3& b) {
     return costs_.length_alone() ? lattice_.step_length(d)
+           : means_              ? lattice_.step_length(d) * means_->at(c, d, a, b)
                                  : costs_.leg(a, b, lattice_.step_length(d));
   }
+  std::size_t means_bytes() const { return means_ ? means_->bytes() : 0; }
   double link_cost(const Vec3& a, const Vec3& b, double length) const {
     return length == 0 ? 0 : costs_.leg(a, b, length);
   }
@@ -413,6 +418,7 @@ class LatticeSearch {
   const Lattice& lattice_;
   MoveRules rules_;
   RouteCosts costs_;
+  std::optional<StepMeans> means_;
   Estimate to_goal_;
   BudgetWatch watch_;
   Vec3 start_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "altiplan/geometry.hpp"
+#include "altiplan/kit/layers/mean_cost.hpp"
 #include "altiplan/objective.hpp"
 
 namespace altiplan::kit {
@@ -21,7 +22,12 @@ class ALTIPLAN_API ScalarField {
               std::vector<float> values, double elsewhere);
 
   /// Integral of the field over the length of the straight leg a–b, exact up to rounding.
-  double integral(const Vec3& a, const Vec3& b) const;
+  double integral(const Vec3& a, const Vec3& b) const {
+    const double length = (b - a).norm();
+    return length == 0 ? 0 : length * mean(a, b);
+  }
+  /// Mean of the field along that leg, whatever the heights of its ends.
+  double mean(const Vec3& a, const Vec3& b) const;
 
   /// At most the integral along any path from a to b: the largest of the field's minimum times
   /// their distance, and of what crossing the columns, or rows, between them costs at least. Each
@@ -33,8 +39,10 @@ class ALTIPLAN_API ScalarField {
   std::array<double, 2> in_cells(const Vec3& p) const {
     return {(p.x() - origin_[0]) / step_[0], (p.y() - origin_[1]) / step_[1]};
   }
-  /// Integral over a part of a leg that lies in one cell, per metre of it; positions in cells.
-  double mean(const std::array<double, 2>& from, const std::array<double, 2>& to) const;
+  /// Mean over a part of a leg that lies in one cell; positions in cells.
+  double mean_within(const std::array<double, 2>& from, const std::array<double, 2>& to) const;
+  /// No line between posts lies between them; positions in cells.
+  bool are_in_one_cell(const std::array<double, 2>& a, const std::array<double, 2>& b) const;
   double minimum_up_to(std::size_t axis, double at) const;
 
   std::array<double, 2> origin_;
@@ -49,11 +57,14 @@ class ALTIPLAN_API ScalarField {
 };
 
 /// The integral of a scalar field along the route; turns by chords within 0.1 mm.
-class ALTIPLAN_API FieldIntegral : public Objective {
+class ALTIPLAN_API FieldIntegral : public Objective, public MeanCost {
  public:
   /// `unit`: of a value times a metre, for people.
   FieldIntegral(ScalarField field, std::string unit)
       : field_(std::move(field)), unit_(std::move(unit)) {}
+  double per_metre(const Vec3& from, const Vec3& to) const override {
+    return field_.mean(from, to);
+  }
 
  private:
   double do_cost(const Leg& leg, double time_s, const Request& request) const override;
