@@ -8,6 +8,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/ground.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "host/gate/places.hpp"
 #include "host/gate/violated_zone.hpp"
 #include "host/judge/judge.hpp"
@@ -465,6 +466,10 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   if (avoids_moving(request)) {
     report.findings.push_back(moving_not_judged());
     request.world = std::make_shared<const World>(world.truth.with_moving({}));
+  }
+  if (kit::has_hours(*request.world)) {  // when the mission is flown is not known to the second
+    request.world =
+        std::make_shared<const World>(kit::between(*request.world, -kInfinity, kInfinity));
   }
   const Route& route = report.imported.route;
   if (options.own_ends) {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/hours.hpp"
+#include "altiplan/measures.hpp"
 #include "host/base/shapes.hpp"
 #include "host/base/words.hpp"
 
@@ -89,8 +91,43 @@ void check_via_course(const Route& route, const Request& request, const Goal& vi
 }
 }  // namespace
 
+namespace {
+/// The same as check, in a world of which parts are closed at times: each leg by what is closed
+/// while it is flown.
+CheckResult check_in_time(const Route& route, const Request& request) {
+  // Speeds that depend on what is near would depend on what is closed.
+  if (route.empty() || !kit::has_hours(*request.world) || !request.vehicle.speed_near.empty()) {
+    return check(route, request);
+  }
+  const auto between = [&](double from, double until) {
+    Request then = request;
+    then.world = std::make_shared<const World>(kit::between(*request.world, from, until));
+    return then;
+  };
+  CheckResult result = check(route, between(kInfinity, -kInfinity));
+  std::vector<Violation>& found = result.violations;
+  std::optional<Approach> before = request.before_start(route.front());
+  double time_s = request.start.time_s;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    constexpr double kRounding = 1e-6;  // seconds
+    const Leg leg = route.leg(i);
+    const double end_s = time_s + leg_duration(leg, request);
+    const Request during = std::isfinite(end_s) ? between(time_s - kRounding, end_s + kRounding)
+                                                : between(-kInfinity, kInfinity);
+    for (Violation& violation : leg_violations(before, leg, during, i)) {
+      if (std::find(found.begin(), found.end(), violation) == found.end()) {
+        found.push_back(std::move(violation));
+      }
+    }
+    before = onward(before, leg);
+    time_s = end_s;
+  }
+  return result;
+}
+}  // namespace
+
 CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via) {
-  CheckResult result = check(route, request);
+  CheckResult result = check_in_time(route, request);
   const std::vector<std::size_t> indices = via_indices(route, via);
   const std::size_t passed = indices.size();
   for (std::size_t i = 0; i < passed; ++i) {

@@ -83,31 +83,35 @@ std::optional<double> time_of(const DailyHours::Edge& edge, long day, const Wher
               : std::nullopt;
 }
 
-bool is_active_on(const DailyHours& hours, long day, const Where& where, double from,
-                  double until) {
+using Times = std::array<double, 2>;
+
+/// The hours of a day.
+Times times_on(const DailyHours& hours, long day, const Where& where) {
   const auto starts = time_of(hours.from, day, where, true);
   auto ends = time_of(hours.until, day, where, false);
   if (!starts || !ends) {
     // No sunrise or sunset: the whole local day, wherever it begins.
-    return double(day - 1) * kDay <= until && double(day + 2) * kDay >= from;
+    return {double(day - 1) * kDay, double(day + 2) * kDay};
   }
   if (*ends <= *starts) {
     *ends += kDay;
   }
-  return *starts <= until && *ends >= from;
+  return {*starts, *ends};
 }
 
-bool is_active_in(const ZonePeriod& period, const Zone& zone, double from, double until) {
+void add_active(const ZonePeriod& period, const Zone& zone, double from, double until,
+                std::vector<Times>& all) {
   from = std::max(from, period.from);
   until = std::min(until, period.until);
   if (from > until) {
-    return false;
+    return;
   }
   // Beyond these many days every day of the week has come.
   constexpr double kMany = 400 * kDay;
   constexpr double kFar = 1e12;
   if (period.hours.empty() || !(until - from <= kMany) || std::abs(from) > kFar) {
-    return true;
+    all.push_back({from, until});
+    return;
   }
   const bool by_sun =
       std::any_of(period.hours.begin(), period.hours.end(), [](const DailyHours& hours) {
@@ -119,13 +123,15 @@ bool is_active_in(const ZonePeriod& period, const Zone& zone, double from, doubl
   for (const DailyHours& hours : period.hours) {
     for (long day = first; day <= last; ++day) {
       const long weekday = ((day + 3) % 7 + 7) % 7;  // 1970-01-01 was a Thursday
-      if ((hours.days >> unsigned(weekday) & 1U) != 0 &&
-          is_active_on(hours, day, at, from, until)) {
-        return true;
+      if ((hours.days >> unsigned(weekday) & 1U) == 0) {
+        continue;
+      }
+      const auto [starts, ends] = times_on(hours, day, at);
+      if (starts <= until && ends >= from) {
+        all.push_back({std::max(starts, from), std::min(ends, until)});
       }
     }
   }
-  return false;
 }
 
 /// A part of a clock's time, two digits.
@@ -176,11 +182,24 @@ std::optional<double> sun_time(Event event, long day, const Point2& lonlat) {
   return time;
 }
 
-bool Zone::is_active(double from, double until) const {
-  return periods.empty() ||
-         std::any_of(periods.begin(), periods.end(), [&](const ZonePeriod& period) {
-           return is_active_in(period, *this, from, until);
-         });
+std::vector<std::array<double, 2>> Zone::active_between(double from, double until) const {
+  std::vector<Times> all;
+  for (const ZonePeriod& period : periods) {
+    add_active(period, *this, from, until, all);
+  }
+  if (periods.empty()) {
+    all.push_back({from, until});
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<Times> apart;
+  for (const Times& times : all) {
+    if (apart.empty() || times[0] > apart.back()[1]) {
+      apart.push_back(times);
+    } else {
+      apart.back()[1] = std::max(apart.back()[1], times[1]);
+    }
+  }
+  return apart;
 }
 
 std::optional<unsigned> day_bits(std::string_view name) {

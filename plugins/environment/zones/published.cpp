@@ -52,6 +52,7 @@ class Converter {
   }
 
   std::vector<PublishedZone> zones;
+  kit::Hours::Times closed;  ///< times of the zones that are added
   std::size_t two_readings = 0;
 
   std::vector<std::string> notes() const {
@@ -102,13 +103,13 @@ class Converter {
   void close(const std::string& name, Prism prism) {
     prism.floor = -kInfinity;
     prism.ceiling = kInfinity;
-    zones.push_back({name, {std::move(prism)}});
+    zones.push_back({name, {std::move(prism)}, closed});
   }
 
   /// Closed at all heights where the ground is not known.
   void add_part(const std::string& name, const GroundPrism& limits) {
     if (!limits.follows_ground()) {
-      zones.push_back({name, limits});
+      zones.push_back({name, limits, closed});
       return;
     }
     if (!site_.before->has_ground()) {
@@ -123,7 +124,7 @@ class Converter {
         GroundPrism above = limits;
         above.prism = within;
         above.slope = slope;
-        zones.push_back({name, std::move(above)});
+        zones.push_back({name, std::move(above), closed});
       } else {
         ++without_ground_;
         close(name, within);
@@ -186,6 +187,21 @@ std::string mapping(const formats::Airspace& airspace, const PublishedRules& rul
 }
 }  // namespace
 
+kit::Hours::Times closed_times(const Zone& zone, const Site& site) {
+  constexpr double kMonth = 30 * 86400.0;
+  const bool has_hours = std::any_of(zone.periods.begin(), zone.periods.end(),
+                                     [](const auto& period) { return !period.hours.empty(); });
+  const double start = site.start_time_s;
+  kit::Hours::Times times = zone.active_between(start, has_hours ? start + kMonth : kInfinity);
+  for (auto& each : times) {
+    each = {each[0] - start, each[1] - start};
+  }
+  if (has_hours) {
+    times.push_back({kMonth, kInfinity});
+  }
+  return times;
+}
+
 void PublishedRules::describe(Fields& f) {
   f("ask", ask, {{"keep_out", Use::keep_out}, {"skip", Use::skip}})
       .doc("published airspace that takes a permission: closed, or ignored because you have it");
@@ -206,7 +222,7 @@ std::vector<formats::Point2> corners_in_use(const formats::Airspace& airspace,
 }
 
 Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,
-                          const Site& site, double horizon_s, Clip* clip) {
+                          const Site& site, double horizon_s, bool in_time, Clip* clip) {
   Published published;
   Converter converter(rules, site, clip);
   std::size_t volumes = 0;
@@ -217,10 +233,18 @@ Published published_zones(const formats::Airspace& airspace, const PublishedRule
       continue;
     }
     timed += !site.has_start_time && has_times(zone);
-    if (site.has_start_time && !zone.is_active(site.start_time_s, site.start_time_s + horizon_s)) {
+    kit::Hours::Times closed;
+    if (in_time && has_times(zone)) {
+      closed = closed_times(zone, site);
+    }
+    const bool is_used = !closed.empty() || !site.has_start_time ||
+                         (!(in_time && has_times(zone)) &&
+                          zone.is_active(site.start_time_s, site.start_time_s + horizon_s));
+    if (!is_used) {
       ++published.inactive;
       continue;
     }
+    converter.closed = std::move(closed);
     converter.add(zone);
   }
   published.notes = {formats::format_name(airspace.format) + ": " +

@@ -6,6 +6,7 @@
 
 #include "altiplan/environment.hpp"
 #include "altiplan/formats/airspace.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "altiplan/params.hpp"
 #include "clip.hpp"
 #include "ground_zones.hpp"
@@ -25,6 +26,7 @@ struct PublishedRules {
 struct PublishedZone {
   std::string name;
   GroundPrism limits;
+  kit::Hours::Times closed{};  ///< none: at all times
 };
 
 struct Published {
@@ -38,7 +40,12 @@ struct Published {
 std::vector<formats::Point2> corners_in_use(const formats::Airspace& airspace,
                                             const PublishedRules& rules);
 
-/// The zones that are closed at some time of the flight. The site has a frame with a position.
+/// Times at which a zone is closed, in seconds after the start; of one with hours those of 30 days,
+/// and all after these.
+kit::Hours::Times closed_times(const formats::Zone& zone, const Site& site);
+
+/// The zones that are closed at some time of the flight; `in_time`: all that are closed at some
+/// time, with their times. The site has a frame with a position.
 Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,
-                          const Site& site, double horizon_s, Clip* clip);
+                          const Site& site, double horizon_s, bool in_time, Clip* clip);
 }  // namespace altiplan::zones

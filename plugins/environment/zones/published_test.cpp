@@ -9,6 +9,7 @@
 #include "altiplan/formats/iso_time.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "altiplan/world.hpp"
 #include "support/files.hpp"
 #include "support/support.hpp"
@@ -304,6 +305,37 @@ TEST_F(Published, ZonesCountWhileTheyAreActive) {
   EXPECT_FALSE(blocked("2022-06-18T12:00Z"));
   EXPECT_TRUE(blocked("2022-06-18T16:30Z"));  // within horizon_s of its start
   EXPECT_TRUE(blocked(""));                   // at an unknown time
+}
+
+TEST_F(Published, InTimeZonesAreClosedAtTheirHoursAlone) {
+  ALTIPLAN_DATA_OR_SKIP(folder, "airspace");
+  const std::string yaml =
+      "{file: " + (folder / "ed269_u-space_che-1.json").string() + ", ask: skip, horizon_s: 0";
+  const auto [x, y] = kFrame.to_local(6.913, 46.431);
+  const Vec3 p(x, y, 700);
+  Site at = site(false);
+  at.has_start_time = true;
+  const double start = at.start_time_s = formats::parse_iso_time("2022-06-18T12:00Z").value();
+  const auto in_time = make_environment("zones", yaml + ", in_time: true}", at);
+  const auto* hours = dynamic_cast<const kit::Hours*>(in_time.get());
+  ASSERT_NE(hours, nullptr);
+  int closed = 0;
+  for (int hour = 0; hour < 36; hour += 2) {
+    at.start_time_s = start + hour * 3600;
+    const bool is_closed = make_environment("zones", yaml + "}", at)->blocked(p, p, 0);
+    closed += is_closed;
+    EXPECT_EQ(hours->between(hour * 3600, hour * 3600)->blocked(p, p, 0), is_closed) << hour;
+  }
+  EXPECT_GT(closed, 2);
+  EXPECT_LT(closed, 16);
+  EXPECT_FALSE(in_time->blocked(p, p, 0));  // beyond the horizon
+  EXPECT_TRUE(hours->between(0, 40 * 3600)->blocked(p, p, 0));
+  EXPECT_TRUE(hours->between(31 * 86400, 31 * 86400)->blocked(p, p, 0));  // beyond what is known
+  EXPECT_FALSE(hours->between(kInfinity, -kInfinity)->blocked(p, p, 0));
+  at.has_start_time = false;
+  const auto always = make_environment("zones", yaml + ", in_time: true}", at);
+  EXPECT_TRUE(always->blocked(p, p, 0));
+  EXPECT_TRUE(dynamic_cast<const kit::Hours&>(*always).parts().empty());
 }
 
 TEST_F(Published, RefusesWhatDoesNotGoWithIt) {

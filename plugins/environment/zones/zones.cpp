@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <mutex>
 
 #include "altiplan/formats/earth_polygon.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
@@ -90,6 +93,7 @@ struct Params {
   KeepInRule keep_in = KeepInRule::any;
   bool clip = false;
   double horizon_s = 3600;
+  bool in_time = false;
 
   void describe(Fields& f) {
     f("list", list).doc("zones defined in the scenario");
@@ -116,20 +120,30 @@ struct Params {
         .doc(
             "only zones that are active at some time from the scenario's start_time to this much "
             "later are used");
+    f("in_time", in_time)
+        .doc(
+            "the judge and the planner sipp hold each leg to the keep-out zones that are active "
+            "while it is flown; all else keeps out of the zones above at all times");
     f.check(!list.empty() || file.has_value(), "give zones in list, in file or in both");
   }
 };
 
-class Zones final : public Environment {
+class Zones : public Environment {
  public:
   Zones(const Params& params, const Site& site) : Zones(Reader(params, site)) {}
 
- private:
+ protected:
+  static constexpr std::size_t kAlways = ~std::size_t{0};
+
   // Everything that the constructor computes, in order.
   struct Reader {
     Site site;
     double horizon_s;
     std::optional<Frame> frame;
+    bool in_time;
+    std::vector<kit::Hours::Times> times;  ///< at which a part is closed
+    std::vector<std::size_t> keep_out_of;  ///< part of each zone; kAlways: of none
+    std::vector<std::size_t> above_ground_of;
     std::vector<Shape> keep_out;
     std::vector<std::vector<Shape>> keep_in;  ///< the parts of each zone
     KeepInRule rule;
@@ -143,7 +157,10 @@ class Zones final : public Environment {
     std::vector<Threat> threats;
 
     Reader(const Params& params, const Site& where)
-        : site(where), horizon_s(params.horizon_s), rule(params.keep_in) {
+        : site(where),
+          horizon_s(params.horizon_s),
+          in_time(params.in_time && where.has_start_time),
+          rule(params.keep_in) {
       drawing.keeps_in_all = rule == KeepInRule::all;
       if (params.file) {
         try {
@@ -194,16 +211,61 @@ class Zones final : public Environment {
       return groups;
     }
 
-    void add(bool keeps_in, const std::vector<Shape>& parts, const std::string& name) {
+    void add(bool keeps_in, const std::vector<Shape>& parts, const std::string& name,
+             kit::Hours::Times closed = {}) {
       if (keeps_in) {
         keep_in.push_back(parts);
       } else {
         keep_out.insert(keep_out.end(), parts.begin(), parts.end());
+        keep_out_of.resize(keep_out.size(), part_of(std::move(closed)));
       }
       for (const Shape& part : parts) {
         drawing.shapes.push_back(
             {part, keeps_in ? Drawn::Role::keep_in : Drawn::Role::keep_out, name});
       }
+    }
+
+    /// The part that is closed at these times; none: at all times.
+    std::size_t part_of(kit::Hours::Times closed) {
+      if (closed.empty()) {
+        return kAlways;
+      }
+      times.push_back(std::move(closed));
+      return times.size() - 1;
+    }
+
+    /// What of the zones is closed where `is_closed(part)`.
+    template <class IsClosed>
+    Reader part(const IsClosed& is_closed) const {
+      Reader some = *this;
+      some.keep_out.clear();
+      some.above_ground.clear();
+      some.above_ground_names.clear();
+      for (std::size_t n = 0; n < keep_out.size(); ++n) {
+        if (is_closed(keep_out_of[n])) {
+          some.keep_out.push_back(keep_out[n]);
+        }
+      }
+      for (std::size_t n = 0; n < above_ground.size(); ++n) {
+        if (is_closed(above_ground_of[n])) {
+          some.above_ground.push_back(above_ground[n]);
+          some.above_ground_names.push_back(above_ground_names[n]);
+        }
+      }
+      return some;
+    }
+
+    /// False for a zone that is not used; `closed` are the times of one that is closed at times.
+    bool is_active(const std::vector<formats::ZonePeriod>& periods, bool keeps_in,
+                   kit::Hours::Times& closed) {
+      if (!in_time || keeps_in || periods.empty()) {
+        return is_active(periods);
+      }
+      formats::Zone zone;
+      zone.periods = periods;
+      closed = closed_times(zone, site);
+      inactive += closed.empty();
+      return !closed.empty();
     }
 
     bool is_active(const std::vector<formats::ZonePeriod>& periods) {
@@ -264,7 +326,8 @@ class Zones final : public Environment {
       }
       for (const formats::Zone& zone : file.zones) {
         try {
-          if (!is_active(zone.periods)) {
+          kit::Hours::Times closed;
+          if (!is_active(zone.periods, zone.keeps_in(), closed)) {
             continue;
           }
           std::vector<Shape> parts;
@@ -277,7 +340,7 @@ class Zones final : public Environment {
                 clip && !zone.keeps_in() ? clip->cut(shape) : std::vector<Shape>{shape};
             parts.insert(parts.end(), within.begin(), within.end());
           }
-          add(zone.keeps_in(), parts, zone.name);
+          add(zone.keeps_in(), parts, zone.name, std::move(closed));
         } catch (const Error& error) {
           throw Error(name + ": '" + zone.name + "': " + error.what());
         }
@@ -290,16 +353,17 @@ class Zones final : public Environment {
 
     void add_published(const formats::Airspace& airspace, const Params& params, Clip* clip) {
       Published published =
-          published_zones(airspace, params.published, site, params.horizon_s, clip);
+          published_zones(airspace, params.published, site, params.horizon_s, in_time, clip);
       notes.insert(notes.end(), published.notes.begin(), published.notes.end());
       inactive += published.inactive;
       two_readings += published.two_readings;
       for (PublishedZone& zone : published.zones) {
         if (zone.limits.follows_ground()) {
           above_ground.push_back(std::move(zone.limits));
+          above_ground_of.push_back(part_of(std::move(zone.closed)));
           above_ground_names.push_back(zone.name);
         } else {
-          add(false, {zone.limits.prism}, zone.name);
+          add(false, {zone.limits.prism}, zone.name, std::move(zone.closed));
         }
       }
     }
@@ -366,10 +430,11 @@ class Zones final : public Environment {
                      ? std::vector<Shape>{Prism{polygon.outline, polygon.holes, floor, ceiling}}
                      : prisms(polygon, keeps_in, floor, ceiling);
       }
-      if (!is_active(time_window(zone.from, zone.until))) {
+      kit::Hours::Times closed;
+      if (!is_active(time_window(zone.from, zone.until), keeps_in, closed)) {
         return;
       }
-      add(keeps_in, shapes, zone.id);
+      add(keeps_in, shapes, zone.id, std::move(closed));
       if (zone.cylinder && !keeps_in) {
         const auto& cylinder = std::get<Cylinder>(shapes.front());
         const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;
@@ -381,7 +446,7 @@ class Zones final : public Environment {
     }
   };
 
-  explicit Zones(Reader reader)
+  explicit Zones(Reader&& reader)
       : keep_out_(std::move(reader.keep_out)),
         keep_in_(reader.kept_in()),
         above_ground_(*reader.site.before, std::move(reader.above_ground)),
@@ -390,6 +455,7 @@ class Zones final : public Environment {
         above_ground_names_(std::move(reader.above_ground_names)),
         info_{std::move(reader.frame), {}, std::move(reader.threats), std::move(reader.notes)} {}
 
+ private:
   Box do_bounds() const override {
     return keep_in_.empty() ? keep_out_.bounds().united(above_ground_.bounds()) : Box{};
   }
@@ -455,10 +521,66 @@ class Zones final : public Environment {
   std::vector<std::string> above_ground_names_;
   LayerInfo info_;
 };
+
+/// Zones of which some are closed at times: closed to what knows no time if they are within the
+/// horizon.
+class ZonesInTime final : public Zones, public kit::Hours {
+ public:
+  ZonesInTime(const Params& params, const Site& site)
+      : ZonesInTime(std::make_shared<Reader>(params, site)) {}
+
+ private:
+  explicit ZonesInTime(const std::shared_ptr<Reader>& all) : Zones(at_some_time(*all)) {
+    if (all->times.empty()) {
+      return;
+    }
+    all_ = all;
+    before_ = *all->site.before;
+    all_->site.before = &before_;
+    Reader outside = *all;
+    outside.keep_in.clear();
+    for (std::size_t n = 0; n < all->times.size(); ++n) {
+      Reader one = outside.part([&](std::size_t part) { return part == n; });
+      parts_.push_back({std::make_shared<const ZonePart>(std::move(one)), all->times[n]});
+    }
+  }
+
+  static Reader at_some_time(Reader& all) {
+    return all.times.empty() ? std::move(all) : all.part([&](std::size_t part) {
+      return part == kAlways || kit::Hours::meet(all.times[part], 0, all.horizon_s);
+    });
+  }
+
+  class ZonePart final : public Zones {
+   public:
+    explicit ZonePart(Reader&& reader) : Zones(std::move(reader)) {}
+  };
+
+  const std::vector<kit::Hours::Part>& do_parts() const override { return parts_; }
+  std::shared_ptr<const Environment> do_between(double from, double until) const override {
+    std::vector<bool> closed(parts_.size());
+    for (std::size_t n = 0; n < parts_.size(); ++n) {
+      closed[n] = kit::Hours::meet(parts_[n].closed, from, until);
+    }
+    const std::lock_guard lock(mutex_);
+    std::shared_ptr<const Environment>& known = known_[closed];
+    if (known == nullptr) {
+      known = std::make_shared<const ZonePart>(
+          all_->part([&](std::size_t part) { return part == kAlways || closed[part]; }));
+    }
+    return known;
+  }
+
+  World before_;
+  std::shared_ptr<Reader> all_;  ///< null where no zone has times
+  std::vector<kit::Hours::Part> parts_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::vector<bool>, std::shared_ptr<const Environment>> known_;
+};
 }  // namespace
 }  // namespace altiplan::zones
 
-ALTIPLAN_PLUGIN(Environment, "zones", altiplan::zones::Zones, altiplan::zones::Params,
+ALTIPLAN_PLUGIN(Environment, "zones", altiplan::zones::ZonesInTime, altiplan::zones::Params,
                 "keep-out and keep-in zones: cylinders, polygons, published airspace, GeoJSON, "
                 "KML, fences, time "
                 "windows")

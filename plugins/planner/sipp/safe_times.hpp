@@ -81,16 +81,9 @@ inline Times unsafe_departures(const Vec3& p, const Vec3& q, double duration, co
   return times;
 }
 
-/// The closed intervals from `from_s` on in which a vehicle at p meets no mover, ascending.
-inline void safe_times(const Vec3& p, const std::vector<Mover>& movers, double from_s,
-                       std::vector<Times>& unsafe, std::vector<Times>& safe) {
-  unsafe.clear();
+/// The closed intervals from `from_s` on that lie in none of the unsafe ones, ascending.
+inline void safe_times(std::vector<Times>& unsafe, double from_s, std::vector<Times>& safe) {
   safe.clear();
-  for (const Mover& mover : movers) {
-    if (const Times times = unsafe_at(p, mover); !times.empty() && times.end > from_s) {
-      unsafe.push_back(times);
-    }
-  }
   std::sort(unsafe.begin(), unsafe.end(),
             [](const Times& a, const Times& b) { return a.begin < b.begin; });
   double free_from = from_s;

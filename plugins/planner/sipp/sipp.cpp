@@ -5,7 +5,8 @@
 //   IEEE International Conference on Robotics and Automation 2011,
 //   doi:10.1109/ICRA.2011.5980306.
 // Guarantees: complete, and optimal in the time of arrival, on its lattice, for a vehicle of one
-//   speed that may wait anywhere among spheres in uniform straight motion; exact in time: safe
+//   speed that may wait anywhere among spheres in uniform straight motion and zones that are closed
+//   at times (to a millisecond); exact in time: safe
 //   intervals and departures are roots of quadratics, not steps of a clock.
 // Complexity: O(n m) time for n states and m moving obstacles; a cell has at most m + 1 states.
 // Deviations: time is continuous; a leg may be safe at both its ends and not between, so departures
@@ -18,6 +19,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/lattice/search_params.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "sipp_search.hpp"
@@ -82,6 +84,24 @@ std::vector<sipp::Mover> movers_of(const Request& request) {
   return movers;
 }
 
+/// What is closed at times.
+std::vector<sipp::Closure> closures_of(const World& world) {
+  constexpr double kMargin = 1e-3;  // seconds
+  std::vector<sipp::Closure> closures;
+  for (const Layer& layer : world.layers()) {
+    if (const auto* hours = dynamic_cast<const kit::Hours*>(layer.environment.get())) {
+      for (const kit::Hours::Part& part : hours->parts()) {
+        sipp::Closure closure{part.layer.get(), {}};
+        for (const auto& times : part.closed) {
+          closure.closed.push_back({times[0] - kMargin, times[1] + kMargin});
+        }
+        closures.push_back(std::move(closure));
+      }
+    }
+  }
+  return closures;
+}
+
 class Sipp final : public Planner {
  public:
   explicit Sipp(const Params& params) : params_(params) {}
@@ -98,6 +118,17 @@ class Sipp final : public Planner {
                          "' at the time of the start",
                      Reason::start);
     }
+    const std::vector<sipp::Closure> closures = closures_of(*request.world);
+    if (closures.empty()) {
+      return search(request, closures);
+    }
+    Request at_all_times = request;
+    at_all_times.world =
+        std::make_shared<const World>(kit::between(*request.world, kInfinity, -kInfinity));
+    return search(at_all_times, closures);
+  }
+
+  PlanResult search(const Request& request, const std::vector<sipp::Closure>& closures) const {
     const kit::SearchSettings settings = params_.settings(request);
     constexpr std::size_t kBytes = sizeof(std::uint32_t);
     const kit::Lattice lattice(request, settings.cell_m, settings.neighbours,
@@ -106,7 +137,7 @@ class Sipp final : public Planner {
       return *std::move(over);
     }
     const std::vector<sipp::Mover> movers = movers_of(request);
-    return sipp::Search(request, settings, lattice, movers).run();
+    return sipp::Search(request, settings, lattice, movers, closures).run();
   }
 
   Traits do_traits() const override {

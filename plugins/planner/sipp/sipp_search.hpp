@@ -24,14 +24,23 @@ struct State {
   bool closed = false;
 };
 
-/// One search from request.start to request.goal among `movers`, at one speed in still air.
+/// A part of the world that is closed at times, which are longer by a millisecond at both ends.
+struct Closure {
+  const Environment* what = nullptr;
+  std::vector<Times> closed;
+};
+
+/// One search from request.start to request.goal among `movers` and `closures`, at one speed in
+/// still air.
 class Search : kit::LatticeSearch {
  public:
   /// All arguments must outlive it.
   Search(const Request& request, const kit::SearchSettings& settings, const kit::Lattice& lattice,
-         const std::vector<Mover>& movers)
+         const std::vector<Mover>& movers, const std::vector<Closure>& closures)
       : LatticeSearch(request, settings, lattice, kInfinity),
         movers_(movers),
+        closures_(closures),
+        needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
         speed_(request.vehicle.speed_mps),
         first_(lattice.size(), kNone) {
     open_.clear(std::max((goal_ - start_).norm() / speed_, 1.0) * 1e-12);
@@ -77,7 +86,8 @@ class Search : kit::LatticeSearch {
 
   void begin() {
     const double now = request_.start.time_s;
-    safe_times(start_, movers_, now, unsafe_, safe_);
+    find_unsafe(start_);
+    safe_times(unsafe_, now, safe_);
     if (safe_.empty() || safe_.front().begin > now) {
       return;
     }
@@ -107,7 +117,8 @@ class Search : kit::LatticeSearch {
   std::uint32_t states_of(const Cell& c, const Vec3& at) {
     std::uint32_t& first = first_[lattice_.index(c)];
     if (first == kNone) {
-      safe_times(at, movers_, request_.start.time_s, unsafe_, safe_);
+      find_unsafe(at);
+      safe_times(unsafe_, request_.start.time_s, safe_);
       first = std::uint32_t(states_.size());
       for (const Times& safe : safe_) {
         states_.push_back({});
@@ -129,8 +140,30 @@ class Search : kit::LatticeSearch {
     open_.push(g + to_goal_(c) / speed_, g, index);
   }
 
-  /// Notes the movers that come near any leg from p.
+  /// Sets `unsafe_` to the times at which a vehicle at p meets something.
+  void find_unsafe(const Vec3& p) {
+    unsafe_.clear();
+    for (const Mover& mover : movers_) {
+      if (const Times times = unsafe_at(p, mover);
+          !times.empty() && times.end > request_.start.time_s) {
+        unsafe_.push_back(times);
+      }
+    }
+    for (const Closure& closure : closures_) {
+      if (closure.what->blocked(p, p, needed_)) {
+        unsafe_.insert(unsafe_.end(), closure.closed.begin(), closure.closed.end());
+      }
+    }
+  }
+
+  /// Notes the movers, and the closures, that come near any leg from p.
   void note_near(const Vec3& p) {
+    near_closures_.clear();
+    for (const Closure& closure : closures_) {
+      if (closure.what->blocked(p, p, needed_ + longest_leg_)) {
+        near_closures_.push_back(&closure);
+      }
+    }
     near_.clear();
     for (const Mover& mover : movers_) {
       if (const Times times = unsafe_at(p, mover, longest_leg_); !times.empty()) {
@@ -160,6 +193,13 @@ class Search : kit::LatticeSearch {
       }
       if (const Times times = unsafe_departures(p, q, duration, *near.mover); !times.empty()) {
         unsafe_departures_.push_back(times);
+      }
+    }
+    for (const Closure* closure : near_closures_) {
+      if (closure->what->blocked(p, q, needed_)) {
+        for (const Times& times : closure->closed) {
+          unsafe_departures_.push_back({times.begin - duration, times.end});
+        }
       }
     }
     std::sort(unsafe_departures_.begin(), unsafe_departures_.end(),
@@ -299,12 +339,15 @@ class Search : kit::LatticeSearch {
   };
 
   const std::vector<Mover>& movers_;
+  const std::vector<Closure>& closures_;
+  double needed_;  ///< distance from closures
   double speed_;
   double longest_leg_ = 0;            ///< of steps and links
   std::vector<std::uint32_t> first_;  ///< by cell: the first of its states
   std::vector<State> states_;
   kit::OpenList open_;
   std::vector<Near> near_;  ///< of the state that is expanded
+  std::vector<const Closure*> near_closures_;
   std::vector<Times> unsafe_departures_;
   std::vector<Times> unsafe_;
   std::vector<Times> safe_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,7 +75,9 @@ struct ALTIPLAN_API Zone {
   /// True if the zone is active at some time of [from, until]. Hours that depend on the sun are
   /// taken at the middle of the zone, longer at both ends by two minutes and by what the sun takes
   /// to cross the zone; where it does not rise or set, for the whole day.
-  bool is_active(double from, double until) const;
+  bool is_active(double from, double until) const { return !active_between(from, until).empty(); }
+  /// The times within [from, until] at which it is, ascending and apart.
+  std::vector<std::array<double, 2>> active_between(double from, double until) const;
 };
 
 /// All corners of the zones' outlines, and the centres of circles.
