@@ -248,6 +248,13 @@ TEST(Airspace, OpenAirHasUnitsTimesAndTypes) {
   EXPECT_EQ(upper("9 furlongs"), ZoneLimit{});
 }
 
+TEST(Airspace, OpenAirHasLabelsAndCommentsAnywhere) {
+  const std::string zone = openair("");
+  EXPECT_EQ(
+      read("AT 45:50:00 N 007:10:00 E\n" + zone + "; not declared a danger area\n").zones.size(),
+      read(zone).zones.size());
+}
+
 TEST(Airspace, SixtySecondsAreTheNextMinute) {
   const auto outline = [](const std::string& corner) {
     return read(openair("DP " + corner)).zones.at(0).volumes[0].polygon.outline;

@@ -52,7 +52,7 @@ class OpenAirReader {
   }
 
   void take(std::string_view line) {
-    if (line.empty()) {
+    if (line.empty() || line.front() == ';') {  // a comment of some programs
       return;
     }
     const std::string record = upper_case(line.substr(0, line.find_first_of(" \t")));
@@ -64,8 +64,8 @@ class OpenAirReader {
       finish();
       in_terrain_ = true;
       doubts_.add("terrain, skipped", printable(value));
-    } else if (record == "SP" || record == "SB") {
-      return;
+    } else if (record == "SP" || record == "SB" || record == "AT") {
+      return;  // how and where things are drawn
     } else if (record == "V") {
       take_variable(value);
     } else if (in_terrain_ && record == "DP") {
@@ -99,7 +99,7 @@ class OpenAirReader {
       circles_.push_back(circle_ring(centre("DC"), numbers(value, 1)[0] * kNauticalMile));
     } else if (is_other(record)) {
       doubts_.add("record " + record + ", not read", label());
-    } else if (record != "AF" && record != "AG" && record != "AT" && record != "AX") {
+    } else if (record != "AF" && record != "AG" && record != "AX") {
       throw Error(
           "unknown record '" + printable(record) +
           "', expected AC, AN, AL, AH, AY, AI, AA, AF, AG, AT, AX, V, DP, DA, DB, DC or DY");
