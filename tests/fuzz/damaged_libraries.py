@@ -51,6 +51,7 @@ PARAMETERS = {
     "ground_distance": "{max_m: 100}",
     "leg_length": "{min_m: 0.1}",
     "line_distance": "{line_m: [[0, 0], [1, 0]], within_m: 100000}",
+    "photos": "{sensor_mm: [24, 16], image_px: [6000, 4000], focal_mm: 16, max_gsd_cm: 10000}",
     "route_length": "{max_ratio: 5}",
     "turn_angle": "{max_deg: 170}",
     "turn_radius": "{min_m: 0.1}",
