@@ -34,21 +34,21 @@ const PhotoLines kPhotos{{{{0, 20, 200}, {100, 20, 200}},
 const formats::Polygon kArea{{{0, 0}, {100, 0}, {100, 120}, {0, 120}}, {}};
 
 TEST(Shown, AllOfAPlaneAndLessBelowAWall) {
-  EXPECT_EQ(share_shown(kArea, kPhotos, wall(0)), 1);
-  EXPECT_LT(share_shown(kArea, kPhotos, wall(70)), 1);
-  EXPECT_EQ(share_shown(kArea, kPhotos, World()), 0);  // nothing is known of the ground
+  EXPECT_EQ(share_shown({kArea}, kPhotos, wall(0)), 1);
+  EXPECT_LT(share_shown({kArea}, kPhotos, wall(70)), 1);
+  EXPECT_EQ(share_shown({kArea}, kPhotos, World()), 0);  // nothing is known of the ground
 }
 
 TEST(Shown, ItsShareIsThatOfTheFootprints) {
   PhotoLines one = kPhotos;
   one.lines.resize(1);
   // To y = 20 + 50, but for cells at the border.
-  EXPECT_NEAR(share_shown(kArea, one, wall(0)), 70.0 / 120, 0.02);
+  EXPECT_NEAR(share_shown({kArea}, one, wall(0)), 70.0 / 120, 0.02);
   one.trigger_m = 10;
   one.off_m = 10;  // of which the height takes 10 * 0.5 more
-  EXPECT_NEAR(share_shown(kArea, one, wall(0)), 55.0 / 120, 0.02);
+  EXPECT_NEAR(share_shown({kArea}, one, wall(0)), 55.0 / 120, 0.02);
   one.trigger_m = 80;  // farther apart than photos are long
-  EXPECT_EQ(share_shown(kArea, one, wall(0)), 0);
+  EXPECT_EQ(share_shown({kArea}, one, wall(0)), 0);
 }
 
 TEST(CameraLines, AreOnFromTheirFirstItemToTheirLast) {
