@@ -16,7 +16,7 @@ struct Stage {
   bool closed;  ///< it ends where it began
 };
 
-/// Areas in the order of the shortest way between them, by local search. Each is entered and left
+/// Areas in the order of the shortest path between them, by local search. Each is entered and left
 /// where the one before and after is nearest. `start` and `goal` may lie beside the areas; without
 /// a goal a closed order ends where it began.
 std::vector<Stage> stages_of(const std::vector<Area>& areas, const std::optional<Point2>& start,
