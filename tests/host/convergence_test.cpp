@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "altiplan/limits.hpp"
+#include "study/report/anytime.hpp"
 #include "study/report/figures.hpp"
 #include "study/report/report.hpp"
+#include "study/statistics/statistics.hpp"
 #include "support/files.hpp"
 
 namespace altiplan::study::report::convergence_test {
@@ -142,6 +144,100 @@ TEST(Convergence, ManyIterationsAreThinned) {
   EXPECT_EQ(all[0].iterations.back(), 6993);
   EXPECT_EQ(all[0].best.back().median, 1001);
   EXPECT_FALSE(all[0].is_population);
+}
+
+std::string at(double time_s, int expanded) {
+  return R"(, "time_s": )" + std::to_string(time_s) + R"(, "expanded": )" +
+         std::to_string(expanded);
+}
+
+/// Two scenarios: p0 comes to 100 in its first run and to 120 in the second, where p1 has none; p2
+/// reports no iterations, and has a route of 103 after 4 s in the first.
+StudyData races() {
+  StudyData data = study(3, 2);
+  data.columns = {"cost", "expanded", "plan_time_s"};
+  for (RunRow& row : data.rows) {
+    const bool solved = row.pipeline == 2 && row.scenario == 0;
+    row.values = {solved ? 103 : kNone, solved ? 50 : kNone, solved ? 4 : kNone};
+    row.outcome = row.pipeline == 0 || solved ? "solved" : "timed_out";
+  }
+  return data;
+}
+std::string race(const RunRow& row) {
+  if (row.pipeline == 2) {
+    return "";
+  }
+  if (row.pipeline == 1) {
+    return kBegin + iteration("plan", 1, "null", at(0.5, 10));
+  }
+  return row.scenario == 0
+             ? kBegin + iteration("plan", 1, "null", at(0.5, 10)) +
+                   iteration("plan", 2, "104", at(1, 20)) + iteration("plan", 3, "104", at(2, 30)) +
+                   iteration("plan", 4, "100", at(8, 40))
+             : kBegin + iteration("plan", 1, "120", at(2, 10));
+}
+
+TEST(Anytime, CostsOverTheLeastOfTheScenario) {
+  const auto all = anytime_of(races(), race);
+  ASSERT_EQ(all.size(), 3U);
+  const AnytimeCurve& curve = all[0].by_time;
+  EXPECT_EQ(curve.at.size(), 100U);
+  EXPECT_DOUBLE_EQ(curve.at.front(), 1);
+  EXPECT_EQ(curve.at.back(), 8);
+  EXPECT_EQ(curve.shares.front(), 0.5) << "an iteration without a route is none";
+  EXPECT_EQ(curve.costs.front().high, kInfinity);
+  EXPECT_EQ(curve.shares.back(), 1);
+  EXPECT_DOUBLE_EQ(curve.costs.back().median, 1);
+  EXPECT_EQ(all[0].by_evaluations.at.front(), 10);
+  EXPECT_EQ(all[0].by_evaluations.at.back(), 50);
+  EXPECT_DOUBLE_EQ(all[0].first_route_s.median, 1.5);
+  ASSERT_EQ(all[0].times_to.size(), 2U);
+  EXPECT_DOUBLE_EQ(all[0].times_to[0].time_s.median, 1.5);
+  EXPECT_DOUBLE_EQ(all[0].times_to[1].time_s.median, 5);
+  EXPECT_DOUBLE_EQ(all[0].times_to[1].evaluations.median, 25);
+  EXPECT_EQ(all[1].first_route_s.low, kInfinity);
+  EXPECT_EQ(all[1].by_time.shares.back(), 0);
+  EXPECT_EQ(all[1].times_to[0].share, 0);
+  EXPECT_EQ(all[2].times_to[0].share, 0.5) << "103 is within 5 %";
+  EXPECT_EQ(all[2].times_to[1].share, 0);
+}
+
+TEST(Anytime, ThePublishedCostIsKnownToo) {
+  StudyData data = races();
+  data.columns.push_back("reference");
+  for (RunRow& row : data.rows) {
+    row.values.push_back(row.scenario == 0 ? 90 : kNone);
+  }
+  const auto all = anytime_of(data, race);
+  EXPECT_DOUBLE_EQ(all[0].by_time.costs.back().high, 1 + 0.9 / 9);
+  EXPECT_EQ(all[0].times_to[0].share, 0.5);
+}
+
+TEST(Anytime, WithoutTimesThereIsNone) {
+  EXPECT_TRUE(anytime_of(study(1, 1), [](const RunRow&) { return colony(); }).empty());
+  EXPECT_TRUE(anytime_of(races(), [](const RunRow&) { return std::string(); }).empty());
+}
+
+TEST(Anytime, TheReportDrawsIt) {
+  for (const bool times : {true, false}) {
+    const TempFolder temp;
+    const std::filesystem::path folder = temp / "report";
+    Source source{races(), "altiplan: 1\n", [](const RunRow&) { return std::string(); }};
+    source.traces = race;
+    Options options;
+    options.times = times;
+    write_report(source, options, folder);
+    const std::string page = text_of(folder / "index.html");
+    EXPECT_EQ(page.find("<section id=\"anytime\">") != page.npos, times);
+    EXPECT_EQ(std::filesystem::exists(folder / "figures/anytime-time.svg"), times);
+    if (times) {
+      const std::string svg = text_of(folder / "figures/anytime-evaluations.svg");
+      EXPECT_EQ(svg.find("nan"), svg.npos);
+      EXPECT_EQ(svg.find("inf\""), svg.npos);
+      const std::string table = text_of(folder / "tables/anytime.md");
+      EXPECT_NE(table.find("| p1 | 2 | – | – | – | 0 %"), table.npos) << table;
+    }
+  }
 }
 
 TEST(Convergence, TheReportDrawsIt) {

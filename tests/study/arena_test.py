@@ -24,6 +24,8 @@ RUN_COLUMNS = [("id", "INTEGER"), ("experimentid", "INTEGER"), ("plannerid", "IN
                ("solution_length", "REAL"), ("solution_segments", "INTEGER"),
                ("solution_smoothness", "REAL"), ("solved", "BOOLEAN"), ("status", "ENUM"),
                ("time", "REAL")]
+PROGRESS = [("runid", "INTEGER"), ("time", "REAL"), ("iterations", "INTEGER"), ("evaluations", "INTEGER"),
+            ("best_cost", "REAL")]
 REFERENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "shared",
                          "data", "benchmark", "ompl_empty_schema.db")
 
@@ -74,8 +76,7 @@ class Arena(StudyCase):
         self.assertEqual(self.columns(database, "plannerConfigs"), CONFIGS)
         self.assertEqual(self.columns(database, "enums"), ENUMS)
         self.assertEqual(self.columns(database, "runs")[:len(RUN_COLUMNS)], RUN_COLUMNS)
-        self.assertEqual(self.columns(database, "progress"), [("runid", "INTEGER"),
-                                                              ("time", "REAL")])
+        self.assertEqual(self.columns(database, "progress"), PROGRESS)
         for name, _ in self.columns(database, "runs"):
             self.assertRegex(name, "^[a-z][a-z0-9_]*$")
         self.assertEqual(database.execute("PRAGMA foreign_key_check").fetchall(), [])
@@ -119,6 +120,25 @@ class Arena(StudyCase):
         settings = tables["plannerConfigs"][1]["settings"]
         self.assertIn("steps.0.with.weight_g = 0.3\n", settings)
         self.assertIn("step = plan astar (route)\nstep = smooth prune (prune)\n", settings)
+
+    def test_progress_is_that_of_the_traces(self):
+        self.write("study.yaml", STUDY.split("pipelines:")[0] + "pipelines:\n  - {id: octile, file: astar.yaml}\n"
+                   "  - {id: star, file: astar.yaml, set: {steps.0: [{plan: rrt_star, id: route}]}}\n"
+                   "budget: {iterations: 3000}\n")
+        database = self.arena(self.store("study.db", "--traces"))
+        rows = database.execute("SELECT plannerid, runid, progress.time, iterations, best_cost, solved FROM "
+                                "progress JOIN runs ON runs.id = runid ORDER BY runid, progress.time").fetchall()
+        self.assertTrue(rows)
+        self.assertEqual({row["plannerid"] for row in rows}, {2})
+        for before, row in zip(rows, rows[1:]):
+            if before["runid"] == row["runid"]:
+                self.assertLess(row["best_cost"], before["best_cost"])
+                self.assertGreater(row["iterations"], before["iterations"])
+        first = database.execute("SELECT first_route_s, plannerid, id FROM runs WHERE first_route_s NOT NULL")
+        firsts = {row["id"]: row["first_route_s"] for row in first}
+        self.assertEqual(set(firsts), {row["runid"] for row in rows})
+        for run, time in firsts.items():
+            self.assertEqual(min(row["time"] for row in rows if row["runid"] == run), time)
 
     def test_it_says_what_the_table_says(self):
         store = self.store("study.db")

@@ -24,7 +24,7 @@ std::string below(const std::string& path, const std::string& key) {
 /// Wall times; `time_s` among metrics is that of a flight.
 bool varies(const std::string& path, const std::string& key) {
   return (key.ends_with("time_s") && !(key == "time_s" && path.ends_with("metrics"))) ||
-         (path.empty() && (key == "trace" || key == "folder"));
+         key == "first_route_s" || (path.empty() && (key == "trace" || key == "folder"));
 }
 
 std::optional<Difference> differ_at(const std::string& path, const Json& first, const Json& second);

@@ -273,6 +273,9 @@ Json to_json(const StepResult& step) {
   json["budget_hit"] = step.budget_hit;
   json["time_s"] = step.time_s;
   json["setup_time_s"] = step.setup_time_s;
+  if (step.first_route_s) {
+    json["first_route_s"] = *step.first_route_s;
+  }
   json["counters"] = counters_json(step.counters);
   json["route"] = to_json(step.route);
   json["legs"] = legs_json(step.route);

@@ -55,6 +55,7 @@ constexpr Key kStep[] = {
     {"accepted", kTruth},
     {"status", kStatus},
     {"message", kText},
+    {"first_route_s", kNumber},
     {"route", kList | kNull},
     {"legs", kList | kNull},
     {"metrics", kObject | kNull},

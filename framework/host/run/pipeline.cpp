@@ -14,6 +14,7 @@ namespace altiplan::host {
 Run::Run(const Config& config, const RunOptions& options)
     : config_(config),
       options_(options),
+      progress_(options.progress != nullptr ? *options.progress : own_progress_),
       watchdog_([this](const std::string& why) { give_up(why); },
                 [&options] { return options.process ? options.process->kept_mb() : 0; }),
       interrupt_(options.stop, [this] { watchdog_.stop_now(); }) {

@@ -149,6 +149,8 @@ class Run {
 
   const Config& config_;
   const RunOptions& options_;
+  RunProgress own_progress_;
+  RunProgress& progress_;  ///< the caller's, or its own
   Mission mission_;
   std::optional<TaskSections> task_;  ///< once it is ordered
   bool ends_explained_ = false;

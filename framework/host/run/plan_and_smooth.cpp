@@ -62,9 +62,7 @@ StepResult Run::begin_attempt(const StepEntry& entry, std::optional<std::string>
   if (trace_) {
     trace_->begin_step(entry.id);
   }
-  if (options_.progress != nullptr) {
-    options_.progress->begin_step();
-  }
+  progress_.begin_step();
   return step;
 }
 

@@ -16,10 +16,11 @@ Request Run::request_for(const StepEntry& entry, std::uint64_t index) {
   request.random = mission_.request.random.sub("step:" + entry.id, index);
   request.trace = trace_.get();
   set_budget(request.budget, entry);
-  if (options_.progress != nullptr) {
-    request.budget.progress = &options_.progress->search;
-  }
+  request.budget.progress = &progress_.search;
   name_caller(named(entry));
+  if (trace_) {
+    trace_->begin_search(progress_.search);
+  }
   request.budget.stop = arm(entry.within_s.value_or(options_.timeout_s), entry.within_mb);
   return request;
 }
@@ -139,6 +140,9 @@ void Run::guarded(const StepEntry& entry, StepResult& step,
     step.message = "threw something that is not a std::exception";
   }
   step.time_s = seconds_since(began);
+  if (trace_ && mission_.via.empty() && !task_) {  // else that of a section
+    step.first_route_s = trace_->first_route_s();
+  }
   if (const std::string changed = leave(); !changed.empty()) {
     step.status = RunStatus::failed;
     step.reason = Reason::process_changed;

@@ -25,6 +25,7 @@ struct StepResult {
   std::string message;
   double time_s = 0;
   double setup_time_s = 0;
+  std::optional<double> first_route_s;  ///< of a traced search that reports iterations
   Counters counters;
   bool budget_hit = false;
   bool proved = false;

@@ -50,6 +50,12 @@ void TraceFile::flush() {
   lines_.clear();
 }
 
+void TraceFile::begin_search(const SearchProgress& progress) {
+  began_ = Budget::Clock::now();
+  progress_ = &progress;
+  first_route_s_.reset();
+}
+
 void TraceFile::add(const TraceEvent& event) {
   if (bytes_ >= max_bytes_ && event.kind != TraceEvent::Kind::iteration) {
     ++left_out_;
@@ -64,6 +70,15 @@ void TraceFile::add(const TraceEvent& event) {
   }
   line += "], \"value\": ";
   append(line, event.value);
+  if (event.kind == TraceEvent::Kind::iteration && progress_ != nullptr) {
+    const double time = std::chrono::duration<double>(Budget::Clock::now() - began_).count();
+    if (!first_route_s_ && std::isfinite(event.value)) {
+      first_route_s_ = time;
+    }
+    line += ", \"time_s\": ";
+    append(line, time);
+    line += ", \"expanded\": " + std::to_string(progress_->expanded.load());
+  }
   if (event.alive >= 0) {
     line += ", \"mean\": ";
     append(line, event.mean);

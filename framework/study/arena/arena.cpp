@@ -2,11 +2,14 @@
 #include "study/arena/arena.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <memory>
 
 #include "altiplan/error.hpp"
 #include "host/result/result_json.hpp"
 #include "study/arena/arena_columns.hpp"
+#include "study/model/progress.hpp"
 #include "study/store/place.hpp"
 #include "study/store/sqlite.hpp"
 #include "study/store/store.hpp"
@@ -46,6 +49,7 @@ class ArenaWriter {
     add_planners();
     add_statuses();
     add_runs();
+    add_progress();
     transaction.commit();
   }
 
@@ -73,7 +77,8 @@ class ArenaWriter {
                   columns + R"(,
         FOREIGN KEY(experimentid) REFERENCES experiments(id) ON DELETE CASCADE,
         FOREIGN KEY(plannerid) REFERENCES plannerConfigs(id) ON DELETE CASCADE);
-      CREATE TABLE progress(runid INTEGER, time REAL, PRIMARY KEY(runid, time),
+      CREATE TABLE progress(runid INTEGER, time REAL, iterations INTEGER, evaluations INTEGER,
+        best_cost REAL, PRIMARY KEY(runid, time),
         FOREIGN KEY(runid) REFERENCES runs(id) ON DELETE CASCADE);)");
     // OMPL's: for each planner the settings that solve most, then the fastest.
     database_.run(R"(
@@ -186,6 +191,27 @@ class ArenaWriter {
         insert.set(++index, cell(row, column));
       }
       insert.run();
+    }
+  }
+
+  /// The iterations of the runs' traces; best_cost is null while there is no route.
+  void add_progress() const {
+    // Of two iterations at one time the later counts.
+    Statement insert = database_.prepare("INSERT OR REPLACE INTO progress VALUES(?, ?, ?, ?, ?)");
+    std::vector<std::unique_ptr<Store>> stores;
+    for (const std::string& store : data_.stores) {
+      stores.push_back(std::make_unique<Store>(store, StoreMode::read));
+    }
+    for (std::size_t n = 0; n < data_.rows.size(); ++n) {
+      const RunRow& row = data_.rows[n];
+      const std::vector<Progress> progress = progress_of(stores.at(row.store)->trace(row.id));
+      for (const Iteration& iteration :
+           progress.empty() ? std::vector<Iteration>() : progress.front().iterations) {
+        if (std::isfinite(iteration.time_s)) {
+          insert.run(n + 1, iteration.time_s, iteration.number, iteration.expanded,
+                     std::isfinite(iteration.best) ? iteration.best : kNothing);
+        }
+      }
     }
   }
 

@@ -126,6 +126,7 @@ std::string metric_label(std::string_view metric) {
 
 bool varies(std::string_view metric) {
   const bool is_of_flight = metric == "time_s" || metric == "flight.time_s";
-  return (metric.ends_with("time_s") && !is_of_flight) || metric.ends_with("memory_mb");
+  return (metric.ends_with("time_s") && !is_of_flight) || metric.ends_with("first_route_s") ||
+         metric.ends_with("memory_mb");
 }
 }  // namespace altiplan::study::report

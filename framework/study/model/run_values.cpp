@@ -20,6 +20,11 @@ class Values {
       all_[name] = value.get<double>();
     }
   }
+  void add_once(const std::string& name, const host::Json& value) {
+    if (!all_.contains(name)) {
+      add(name, value);
+    }
+  }
   void add_each(const std::string& prefix, const host::Json& map) {
     for (const auto& [name, value] : map.items()) {
       add(prefix + name, value);
@@ -90,6 +95,10 @@ RunValues values_of(const host::Json& result) {
       values.add(prefix + name, step.at(name));
     }
     values.add_cost(prefix, step);
+    if (const auto first = step.find("first_route_s"); first != step.end()) {
+      values.add(prefix + "first_route_s", *first);
+      values.add_once("first_route_s", *first);
+    }
   }
   if (const host::Json& flight = result.at("flight"); !flight.is_null()) {
     for (const char* name : kOfFlightAlone) {
@@ -110,9 +119,9 @@ std::string why_no_value(const std::string& name, const std::vector<std::string>
   static const std::vector<std::string> kOfRun =
       joined(kOfRoute, {"plan_time_s", "smooth_time_s", "expanded", "setup_time_s", "solved",
                         "wall_time_s", "cpu_time_s", "peak_memory_mb", "cost", "bound", "gap",
-                        "reference", "reference_gap"});
+                        "reference", "reference_gap", "first_route_s"});
   static const std::vector<std::string> kOfStep =
-      joined(kOfRoute, {"time_s", "setup_time_s", "accepted", "budget_hit", "cost",
+      joined(kOfRoute, {"time_s", "setup_time_s", "first_route_s", "accepted", "budget_hit", "cost",
                         "bound", "gap"});
   static const std::vector<std::string> kOfFlight =
       joined(joined(kOfRoute, kOfFlightAlone), {"replans", "replan_time_s", "handovers"});

@@ -36,7 +36,8 @@ std::vector<std::string> compared_metrics(const StudyData& data) {
 
 bool is_measured(std::string_view value) {
   const bool is_flying_time = value == "time_s" || value == "flight.time_s";
-  return (value.ends_with("time_s") && !is_flying_time) || value.ends_with("memory_mb");
+  return (value.ends_with("time_s") && !is_flying_time) || value.ends_with("first_route_s") ||
+         value.ends_with("memory_mb");
 }
 
 std::vector<bool> repeat_themselves(const StudyData& data) {

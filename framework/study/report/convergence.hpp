@@ -3,30 +3,15 @@
 
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "study/model/progress.hpp"
 #include "study/model/study_data.hpp"
 
 namespace altiplan::study::report {
 
 /// The trace of a run, "" if there is none.
 using TraceSource = std::function<std::string(const RunRow&)>;
-
-/// An iteration of a search in the trace (TraceEvent).
-struct Iteration {
-  double number = 0;
-  double best = 0;    ///< infinite while there is no route
-  double mean = 0;    ///< NaN if it found none
-  double alive = -1;  ///< -1: no population
-};
-
-/// The iterations of the first search of a step.
-struct Progress {
-  std::string step;
-  std::vector<Iteration> iterations;  ///< by ascending number
-};
-std::vector<Progress> progress_of(std::string_view trace);
 
 /// The 10th percentile, the median and the 90th percentile over runs; NaN without runs, infinite if
 /// that share of the runs has no route.
@@ -35,6 +20,9 @@ struct Spread {
   double median = 0;
   double high = 0;
 };
+
+/// Of the values that are not NaN.
+Spread spread_of(std::vector<double> values);
 
 /// The convergence of the searches of a pipeline's step.
 struct Convergence {

@@ -36,39 +36,8 @@ Band band_of(const Convergence& convergence, const std::vector<Spread>& spreads)
   return band;
 }
 
-std::string place(double x, double y) { return pixels(x) + " " + pixels(y); }
-
-/// The area between the percentiles, where both are finite.
-void fill(Canvas& canvas, const Band& band, const Axis& along, const Axis& up, std::size_t series) {
-  std::string d;
-  std::string there;
-  std::string back;
-  const auto close = [&] {
-    d += there.empty() ? "" : "M" + there.substr(1) + back + "Z";
-    there.clear();
-    back.clear();
-  };
-  for (std::size_t i = 0; i < band.x.size(); ++i) {
-    if (std::isfinite(band.y[i].low) && std::isfinite(band.y[i].high)) {
-      there += "L" + place(along(band.x[i]), up(band.y[i].high));
-      back = "L" + place(along(band.x[i]), up(band.y[i].low)) + back;
-    } else {
-      close();
-    }
-  }
-  close();
-  if (!d.empty()) {
-    canvas.path(d, series_fill_pale(series));
-  }
-}
-
 void draw(Canvas& canvas, const Band& band, const Axis& along, const Axis& up, std::size_t series) {
-  fill(canvas, band, along, up, series);
-  std::vector<double> medians;
-  for (const Spread& spread : band.y) {
-    medians.push_back(spread.median);
-  }
-  draw_curve(canvas, band.x, medians, along, up, series_line(series));
+  draw_spread(canvas, band.x, band.y, along, up, series);
 }
 
 Axis axis_up(const std::vector<const std::vector<Spread>*>& all, double bottom, double top) {
@@ -113,7 +82,44 @@ std::string caption_of(const Convergence& convergence) {
          (convergence.is_ratio ? "; lengths relative to the final best of their run" : "") +
          ". A best length is infinite while there is no route.";
 }
+
+std::string place(double x, double y) { return pixels(x) + " " + pixels(y); }
+
+/// The area between the percentiles, where both are finite.
+void fill(Canvas& canvas, const std::vector<double>& x, const std::vector<Spread>& y,
+          const Axis& along, const Axis& up, std::size_t series) {
+  std::string d;
+  std::string there;
+  std::string back;
+  const auto close = [&] {
+    d += there.empty() ? "" : "M" + there.substr(1) + back + "Z";
+    there.clear();
+    back.clear();
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::isfinite(y[i].low) && std::isfinite(y[i].high)) {
+      there += "L" + place(along(x[i]), up(y[i].high));
+      back = "L" + place(along(x[i]), up(y[i].low)) + back;
+    } else {
+      close();
+    }
+  }
+  close();
+  if (!d.empty()) {
+    canvas.path(d, series_fill_pale(series));
+  }
+}
 }  // namespace
+
+void draw_spread(Canvas& canvas, const std::vector<double>& x, const std::vector<Spread>& y,
+                 const Axis& along, const Axis& up, std::size_t series) {
+  fill(canvas, x, y, along, up, series);
+  std::vector<double> medians;
+  for (const Spread& spread : y) {
+    medians.push_back(spread.median);
+  }
+  draw_curve(canvas, x, medians, along, up, series_line(series));
+}
 
 Figure convergence_figure(const StudyData& data, const Convergence& convergence) {
   const bool is_population = convergence.is_population;

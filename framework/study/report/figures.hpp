@@ -5,6 +5,7 @@
 
 #include "study/figures/svg.hpp"
 #include "study/report/analysis.hpp"
+#include "study/report/anytime.hpp"
 #include "study/report/convergence.hpp"
 
 namespace altiplan::study::report {
@@ -28,6 +29,14 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
 Figure pareto_figure(const StudyData& data, const Trade& trade);
 /// Best and mean length by iteration, and the number of a population that found a route.
 Figure convergence_figure(const StudyData& data, const Convergence& convergence);
+/// Of all pipelines the cost over the best known, and the share of runs with a route, by seconds or
+/// by evaluations; nothing if no run has a route.
+std::optional<Figure> anytime_figure(const StudyData& data, const std::vector<Anytime>& all,
+                                     bool by_evaluations);
+
+/// Medians as a curve, and the band from the 10th to the 90th percentile where both are finite.
+void draw_spread(Canvas& canvas, const std::vector<double>& x, const std::vector<Spread>& y,
+                 const Axis& along, const Axis& up, std::size_t series);
 
 /// The pipeline's short name, of at most that many characters.
 std::string pipeline_label(const StudyData& data, std::size_t pipeline,

@@ -229,6 +229,7 @@ std::string contents_html(const Content& content) {
   }
   out += content.trade_figures.empty() ? "" : "<a href=\"#pareto\">Pareto</a>";
   out += content.effort_figures.empty() ? "" : "<a href=\"#effort\">Effort</a>";
+  out += content.anytime_figures.empty() ? "" : "<a href=\"#anytime\">Anytime</a>";
   out += content.convergence.empty() ? "" : "<a href=\"#convergence\">Convergence</a>";
   return out +
          "<a href=\"#scenarios\">Scenarios</a><a href=\"#method\">Method</a><a "
@@ -294,6 +295,10 @@ std::string page_text(const Content& content) {
   }
   if (!content.effort_figures.empty()) {
     body += section("effort", "Solved by effort", figures_html(content.effort_figures));
+  }
+  if (!content.anytime_figures.empty()) {
+    body += section("anytime", "Routes over time",
+                    figures_html(content.anytime_figures) + table_html(anytime_table(content), 30));
   }
   if (!content.convergence.empty()) {
     body += section("convergence", "Convergence", convergence_html(content));

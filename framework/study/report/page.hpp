@@ -45,6 +45,8 @@ struct Content {
   std::vector<Figure> effort_figures;
   std::vector<Convergence> convergence;
   std::vector<Figure> convergence_figures;  ///< of the first kMaxConvergence
+  std::vector<Anytime> anytime;
+  std::vector<Figure> anytime_figures;
   Builds builds;
   Scenes scenes;
 };
@@ -60,6 +62,8 @@ Table comparison_table(const Content& content, const MetricAnalysis& metric);
 Table pareto_table(const Content& content, const Trade& trade);
 /// The iterations at which the searches of each pipeline came near to their final length.
 Table convergence_table(const Content& content);
+/// How long each pipeline takes to a first route, and to come near to the best known cost.
+Table anytime_table(const Content& content);
 /// One row per scenario: solved runs of each pipeline, and the median of the first metric.
 Table scenario_table(const Content& content);
 Table pipeline_table(const Content& content);

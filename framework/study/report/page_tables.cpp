@@ -100,6 +100,27 @@ Table convergence_table(const Content& content) {
   return table;
 }
 
+Table anytime_table(const Content& content) {
+  Table table{
+      "anytime",
+      "Seconds to the first route, and to one within 5 % and 1 % of the least cost known of the "
+      "scenario, and evaluations in the planner's own unit: median [10th, 90th percentile] over "
+      "all runs, a dash if not reached by that part of them; the share of runs that come so near",
+      columns({"pipeline", "#runs", "#first route, s", "#to 5 %, s", "#evaluations", "#of the runs",
+               "#to 1 %, s", "#evaluations", "#of the runs"}),
+      {}};
+  for (const Anytime& each : content.anytime) {
+    std::vector<Cell> row{name(content, each.pipeline), count(each.runs),
+                          spread(each.first_route_s)};
+    for (const TimeTo& to : each.times_to) {
+      row.insert(row.end(),
+                 {spread(to.time_s), spread(to.evaluations), {percent(to.share), to.share}});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Table failure_table(const Content& content) {
   Table table{"failures",
               "Unexplained failures: runs that ended by a fault of a plugin or its build",

@@ -113,6 +113,11 @@ void draw(Content& content) {
       content.effort_figures.push_back(std::move(*figure));
     }
   }
+  for (const bool by_evaluations : {false, true}) {
+    if (auto figure = anytime_figure(data, content.anytime, by_evaluations)) {
+      content.anytime_figures.push_back(std::move(*figure));
+    }
+  }
   std::set<std::string> names;
   for (const Convergence& convergence : content.convergence) {
     if (names.size() < kMaxConvergence) {
@@ -141,6 +146,9 @@ Content content_of(const Source& source, const Options& options) {
   content.analysis = analyse(content.data, options.times);
   content.failures = failures_of(content.data);
   content.convergence = convergence_of(content.data, source.traces);
+  if (content.times) {
+    content.anytime = anytime_of(content.data, source.traces);
+  }
   draw(content);
   content.builds = builds_of(content.data, source.results);
   SceneOptions scenes = options.scenes;
@@ -157,6 +165,7 @@ std::vector<Figure> all_figures(const Content& content) {
   }
   all.insert(all.end(), content.trade_figures.begin(), content.trade_figures.end());
   all.insert(all.end(), content.effort_figures.begin(), content.effort_figures.end());
+  all.insert(all.end(), content.anytime_figures.begin(), content.anytime_figures.end());
   all.insert(all.end(), content.convergence_figures.begin(), content.convergence_figures.end());
   return all;
 }
@@ -171,6 +180,9 @@ void write_tables(const Content& content, const fs::path& folder) {
   }
   for (const Trade& trade : content.analysis.trades) {
     tables.push_back(pareto_table(content, trade));
+  }
+  if (!content.anytime.empty()) {
+    tables.push_back(anytime_table(content));
   }
   if (!content.convergence.empty()) {
     tables.push_back(convergence_table(content));

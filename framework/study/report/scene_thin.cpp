@@ -140,7 +140,7 @@ void drop_times(host::Json& json) {
   if (json.is_object()) {
     host::Json kept = host::Json::object();
     for (auto& [key, value] : json.items()) {
-      if (!key.ends_with("time_s")) {
+      if (!key.ends_with("time_s") && key != "first_route_s") {
         kept[key] = std::move(value);
       }
     }
