@@ -116,7 +116,7 @@ def main():
     listed = subprocess.run([PROGRAM, "reproduce", "--list", "--json"], check=True,
                             stdout=subprocess.PIPE).stdout
     papers = json.loads(listed)
-    assert len(papers) == 6, [paper["name"] for paper in papers]
+    assert len(papers) == 7, [paper["name"] for paper in papers]
     problems = [problem for paper in papers for problem in problems_of(paper)]
     if problems:
         sys.exit("\n".join(problems))

@@ -165,7 +165,7 @@ class Reproduce(case.StudyCase):
         papers = json.loads(out)
         self.assertEqual([(paper["number"], paper["name"]) for paper in papers],
                          [("000", "uav_rrt"), ("001", "velocity_field"), ("002", "fusion_astar"),
-                          ("003", "stratified_theta"), ("004", "ant_colony"), ("005", "spso")])
+                          ("003", "stratified_theta"), ("004", "ant_colony"), ("005", "spso"), ("006", "nmopso")])
         for paper in papers:
             self.assertGreater(len(paper["rows"]), 10)
             self.assertGreater(paper["cpu_s"], paper["quick_cpu_s"])
