@@ -2,8 +2,12 @@
 // Moving obstacles of a scenario that routes are planned against: `known: true`.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "altiplan/formats/mission_file.hpp"
 #include "altiplan/measures.hpp"
 #include "host/import_export/export.hpp"
+#include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/legs_json.hpp"
 #include "support/files.hpp"
@@ -65,7 +69,7 @@ TEST_F(KnownMovers, APlanThatMeetsOneIsRefusedBeforeItCollides) {
   }
 }
 
-TEST_F(KnownMovers, AWaitIsJudgedFlownAndStoredButNotExported) {
+TEST_F(KnownMovers, AWaitIsJudgedFlownAndStored) {
   const std::string pipeline = (testing::configs() / "pipelines/among_movers.yaml").string();
   const Json json = testing::run_file(pipeline).json;
   ASSERT_EQ(json["status"], "solved") << json["message"];
@@ -85,6 +89,61 @@ TEST_F(KnownMovers, AWaitIsJudgedFlownAndStoredButNotExported) {
   ASSERT_EQ(exported.messages.size(), 1U);
   EXPECT_TRUE(exported.messages[0].starts_with("not written: the route waits 16."))
       << exported.messages[0];
+}
+
+TEST_F(KnownMovers, AWaitIsExportedAsAHoldOfWholeSeconds) {
+  folder_.write("scenario.yaml", testing::replaced(scenario("    known: true\n"), "moving:",
+                                                   R"(start_time: 2026-06-17T05:00:00Z
+environment:
+  - zones:
+      in_time: true
+      list:
+        - polygon: {outline_m: [[300, -300], [400, -300], [400, 300], [300, 300]]}
+          until: 2026-06-17T05:01:00Z
+moving:)"));
+  const std::string pipeline =
+      folder_
+          .write("pipeline.yaml", testing::replaced(testing::replaced(kSteps, "astar", "sipp"),
+                                                    "  - fly: route\n", ""))
+          .string();
+  const Json json = testing::run_file(pipeline).json;
+  ASSERT_EQ(json["status"], "solved") << json["message"];
+  const Json& plan = json["steps"][0];
+  const Route route = route_of_legs({0, 0, 50}, plan["legs"], "legs");
+  double wait_s = 0;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    wait_s = std::max(wait_s, route.leg(i).hold_s);
+  }
+  ASSERT_GT(wait_s, 20);
+  ASSERT_NE(wait_s, std::ceil(wait_s));
+  Overrides overrides;
+  overrides.plugin_path = {altiplan::folders::build() / "lib/altiplan/plugins"};
+  const Mission mission = build_mission(load_config(pipeline, overrides), 1);
+  ExportOptions options;
+  options.home_altitude_m = 0;
+  const auto exported = [&](const char* format) {
+    options.format = &format_named(format);
+    options.altitude = options.format->frames.front();
+    return export_route(mission, {"x", route, {}, {}}, options);
+  };
+  for (const char* format : {"qgc-plan", "waypoints"}) {
+    const Exported file = exported(format);
+    ASSERT_TRUE(file.text.has_value()) << file.messages[0];
+    std::vector<double> holds;
+    for (const auto& command : formats::read_mission("x", *file.text).commands) {
+      if (command.number == 16 && command.params[0] > 0) {
+        holds.push_back(command.params[0]);
+      }
+    }
+    EXPECT_EQ(holds, std::vector<double>{std::ceil(wait_s)}) << format;
+  }
+  for (const char* format : {"kml", "gpx", "geojson", "csv", "wpml", "litchi"}) {
+    const Exported file = exported(format);
+    EXPECT_FALSE(file.text.has_value()) << format;
+    EXPECT_NE(file.messages[0].find("the format cannot say: use qgc-plan"), std::string::npos);
+  }
+  options.max_items = 12;
+  EXPECT_FALSE(exported("qgc-plan").text.has_value());
 }
 
 TEST_F(KnownMovers, EveryPartOfARouteBeginsWhenTheOneBeforeEnds) {

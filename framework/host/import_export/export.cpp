@@ -5,6 +5,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "host/base/words.hpp"
 #include "host/import_export/export_attempt.hpp"
 #include "host/import_export/fence.hpp"
@@ -174,8 +175,16 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     return result;
   }
   if (const std::string wait = first_wait(source.route); !wait.empty()) {
-    result.messages.push_back("not written: " + wait + ", which no mission written here can say");
-    return result;
+    if (!options.format->has_commands() || options.max_items) {
+      result.messages.push_back("not written: " + wait + ", which " +
+                                (options.max_items
+                                     ? "--max-items does not keep"
+                                     : "the format cannot say: use qgc-plan or waypoints"));
+      return result;
+    }
+    notes.emplace_back(
+        "waits written as hold times of waypoints, in whole seconds, as ArduPilot knows no others, "
+        "and judged so");
   }
   if (source.times.empty()) {
     source.via = via_indices(source.route, mission.via);
@@ -195,9 +204,10 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
         "warning: an aeroplane climbs to the start from its runway, in a straight line: that climb "
         "is not judged here; altiplan check judges it from home");
   }
-  if (avoids_moving(mission.request)) {
+  if (avoids_moving(mission.request) || kit::has_hours(*mission.request.world)) {
     notes.emplace_back(
-        "warning: the moving obstacles were judged for a route that leaves its first point at the "
+        "warning: what moves or is closed at times was judged for a route that leaves its first "
+        "point at the "
         "scenario's start");
   }
   if (!options.format->is_local() && !home_altitude(mission, options, source.route.front())) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/import_export/export_attempt.hpp"
 
+#include <cmath>
+
 #include "altiplan/error.hpp"
 #include "host/base/words.hpp"
 #include "host/import_export/export_notes.hpp"
@@ -50,13 +52,16 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
                                            const ExportOptions& options,
                                            const std::vector<PlaceTiming>& timing) {
   std::vector<MissionItem> items;
-  for (const auto& [at, circle] : places) {
-    const auto kind = circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
-    items.push_back({kind, place(at), 0, "", circle});
+  for (const MissionPlace& each : places) {
+    const auto kind = each.circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
+    items.push_back({kind, place(each.at), 0, "", each.circle});
   }
   if (options.takeoff) {
     if (items.front().circle) {
       throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
+    }
+    if (places.front().hold_s > 0) {
+      throw Error("--takeoff: the route waits at its first point, which a take-off cannot say");
     }
     items.front().kind = MissionItem::Kind::takeoff;
   }
@@ -64,7 +69,7 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
     const Vec3 down = landing(mission, {places.back().at}, place);
     items.push_back({MissionItem::Kind::land, place(down), 0, ""});
   }
-  if (options.circles_at_end && !items.back().circle) {
+  if (options.circles_at_end && places.back().hold_s == 0 && !items.back().circle) {
     items.back().kind = MissionItem::Kind::loiter;
   }
   for (std::size_t n = 0; n < timing.size(); ++n) {
@@ -136,6 +141,33 @@ std::size_t item_count(const ExportSource& source, const Mission& mission,
 
 namespace {
 
+/// The route of a file with the waits of its waypoints, which reading a mission leaves out; none
+/// where it is not clear which wait.
+Route with_waits(const Route& route, const formats::MissionFile& file) {
+  std::vector<double> holds_s;
+  for (const formats::MissionCommand& command : file.commands) {
+    if (command.number == Command::kWaypoint) {
+      holds_s.push_back(command.params[0]);
+    } else if (command.number != Command::kChangeSpeed && command.number != Command::kLand &&
+               command.number != Command::kVtolLand) {
+      holds_s.push_back(0);
+    }
+  }
+  if (holds_s.size() != route.size()) {
+    return {};
+  }
+  Route waiting{route.front()};
+  for (std::size_t i = 0; i < route.size(); ++i) {
+    if (i > 0) {
+      waiting.push_back(route.leg(i - 1));
+    }
+    if (holds_s[i] > 0) {
+      waiting.push_back(Leg::hold(route[i], holds_s[i]));
+    }
+  }
+  return waiting;
+}
+
 /// The route as text, in the ways that may be tried.
 struct Attempt {
   const Mission& mission;
@@ -153,9 +185,12 @@ struct Attempt {
     for (const Decimals& each : kDecimals) {
       decimals = text.decimals = each;
       const std::string now = as_text();
-      const ImportedRoute read =
-          read_imported_route(std::string("route") + options.format->extension, now, mission.truth,
-                              mission.request, place.home());
+      const std::string name = std::string("route") + options.format->extension;
+      ImportedRoute read =
+          read_imported_route(name, now, mission.truth, mission.request, place.home());
+      if (source.route.waits()) {
+        read.route = with_waits(read.route, read_mission_file(name, now));
+      }
       const std::string problem_now =
           problem_of(mission, source, read.route,
                      without_tangents ? ending_with(request, read.route) : request);
@@ -170,8 +205,10 @@ struct Attempt {
   std::string as_text() {
     text.mission.items = items_of(written.places, mission, place, options, timing);
     text.local.clear();
+    text.holds_s.clear();
     for (const MissionPlace& each : written.places) {
       text.local.push_back(each.at);
+      text.holds_s.push_back(std::ceil(each.hold_s));
     }
     return options.format->write(text);
   }

@@ -14,6 +14,7 @@ namespace altiplan::host {
 struct MissionPlace {
   Vec3 at{0, 0, 0};
   std::optional<formats::MissionCircle> circle{};
+  double hold_s = 0;  ///< for which the vehicle waits there, of a route that is written
 };
 
 struct JoinedRoute {

@@ -29,6 +29,7 @@ struct MissionText {
   Decimals decimals;
   /// Expected time at each item, seconds since the route's start; empty: unknown.
   std::vector<double> times_s;
+  std::vector<double> holds_s;         ///< waits at each item, whole seconds; empty: none
   std::optional<double> start_time_s;  ///< of the route, since 1970-01-01 UTC
 };
 

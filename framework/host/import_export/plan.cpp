@@ -138,12 +138,16 @@ Plan plan_of(const MissionText& text) {
   plan.decimals = text.decimals;
   plan.home = text.mission.home;
   double speed_mps = text.speed_mps;
-  for (const MissionItem& item : text.mission.items) {
+  for (std::size_t n = 0; n < text.mission.items.size(); ++n) {
+    const MissionItem& item = text.mission.items[n];
     if (item.speed_mps > 0 && item.speed_mps != speed_mps) {
       speed_mps = item.speed_mps;
       plan.items.push_back(speed_item(speed_mps, text.decimals.metres));
     }
     plan.items.push_back(item_of(item, text));
+    if (n < text.holds_s.size() && text.holds_s[n] > 0) {
+      plan.items.back().params[0] = text.holds_s[n];
+    }
   }
   plan.fence = fence_of(text.mission.zones, text.decimals);
   return plan;

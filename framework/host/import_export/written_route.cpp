@@ -66,7 +66,9 @@ class Writing {
     add(route_.front(), false);
     for (std::size_t i = 0; i < route_.leg_count(); ++i) {
       const Leg leg = route_.leg(i);
-      if (!leg.turns()) {
+      if (leg.waits()) {
+        result_.places.back().hold_s += leg.hold_s;
+      } else if (!leg.turns()) {
         add(leg.to, is_joint(i + 1));
       } else if (form_.loiters && is_loiter(i)) {
         result_.places.push_back(circle_of(leg));
