@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Zones that are closed at times.
+// Zones that are closed at times, to the judge and to sipp.
 #include <gtest/gtest.h>
 
 #include "altiplan/formats/iso_time.hpp"
@@ -8,7 +8,7 @@
 #include "host/judge/judge.hpp"
 #include "support/support.hpp"
 
-namespace altiplan::sipp_hours_test {
+namespace altiplan::zone_hours_test {
 namespace {
 
 constexpr double kStart = 1'781'672'400;  // 2026-06-17T05:00:00Z
@@ -50,11 +50,11 @@ double duration_of(const PlanResult& plan, const Request& request) {
   return plan.status == PlanStatus::solved ? *measure(plan.route, request).duration_s : kInfinity;
 }
 
-TEST(SippHours, TheStartOfTheTestIsThatOfItsClock) {
+TEST(ZoneHours, TheStartOfTheTestIsThatOfItsClock) {
   EXPECT_EQ(formats::parse_iso_time(clock(0)), kStart);
 }
 
-TEST(SippHours, WaitsGoesAroundOrPassesBefore) {
+TEST(ZoneHours, WaitsGoesAroundOrPassesBefore) {
   const double straight = 18;
   const auto duration = [](const std::string& when) {
     const Request request = request_with(wall(when));
@@ -72,7 +72,7 @@ TEST(SippHours, WaitsGoesAroundOrPassesBefore) {
   EXPECT_NEAR(duration(", from: '" + clock(8) + "', until: '" + clock(9) + "'"), 9 + 12, 1e-2);
 }
 
-TEST(SippHours, TheJudgeHoldsLegsToTheTimesAtWhichTheyAreFlown) {
+TEST(ZoneHours, TheJudgeHoldsLegsToTheTimesAtWhichTheyAreFlown) {
   const Route straight{{5, 55, 5}, {35, 55, 5}, {55, 55, 5}, {95, 55, 5}};
   const auto is_ok = [&](const std::string& when, const std::string& more) {
     return host::judge(straight, request_with(wall(when, 100), more), {}).ok();
@@ -95,7 +95,7 @@ TEST(SippHours, TheJudgeHoldsLegsToTheTimesAtWhichTheyAreFlown) {
             PlanStatus::no_route);
 }
 
-TEST(SippHours, ARouteThatCannotBeTimedIsHeldToAllZones) {
+TEST(ZoneHours, ARouteThatCannotBeTimedIsHeldToAllZones) {
   Request request = request_with(wall(", until: '" + clock(5) + "'", 100));
   const Route straight{{5, 55, 5}, {35, 55, 5}, {55, 55, 5}, {95, 55, 5}};
   EXPECT_TRUE(host::judge(straight, request, {}).ok());
@@ -103,7 +103,7 @@ TEST(SippHours, ARouteThatCannotBeTimedIsHeldToAllZones) {
   EXPECT_FALSE(host::judge(straight, request, {}).ok());
 }
 
-TEST(SippHours, IsNoLaterThanWaitingForAllZonesAndNoEarlierThanWithoutThem) {
+TEST(ZoneHours, IsNoLaterThanWaitingForAllZonesAndNoEarlierThanWithoutThem) {
   int waited = 0;
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
     RandomStream draw = RandomStream(seed).sub("hours");
@@ -143,4 +143,4 @@ TEST(SippHours, IsNoLaterThanWaitingForAllZonesAndNoEarlierThanWithoutThem) {
   EXPECT_GT(waited, 5);
 }
 }  // namespace
-}  // namespace altiplan::sipp_hours_test
+}  // namespace altiplan::zone_hours_test
