@@ -55,6 +55,18 @@ TEST(RunValues, TheGapIsAShareOfTheBound) {
   EXPECT_EQ(why_no_value("steps.plan.gap"), "");
 }
 
+TEST(RunValues, ATaskHasABoundAndFlights) {
+  const auto values = values_of(Json::parse(
+      R"({"metrics": {}, "setup_time_s": 0, "flight": null, "steps": [],
+          "task": {"plugin": "cover", "passes": 9, "flights": [60, 70], "time_s": 130, "bound_s": 99}})"));
+  const std::map<std::string, double> of{values.begin(), values.end()};
+  EXPECT_EQ(of.at("task.bound_s"), 99);
+  EXPECT_EQ(of.at("task.flights"), 2);
+  EXPECT_EQ(why_no_value("task.bound_s"), "");
+  EXPECT_EQ(why_no_value("task.flights"), "");
+  EXPECT_NE(why_no_value("task.passes"), "");
+}
+
 TEST(RunValues, NamesOfReplansAreKnown) {
   EXPECT_EQ(why_no_value("flight.replan_time_s"), "");
   EXPECT_EQ(why_no_value("flight.replan_counters.nodes_added"), "");

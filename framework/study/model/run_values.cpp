@@ -100,6 +100,10 @@ RunValues values_of(const host::Json& result) {
       values.add_once("first_route_s", *first);
     }
   }
+  if (const auto task = result.find("task"); task != result.end() && task->is_object()) {
+    values.add("task.bound_s", task->at("bound_s"));
+    values.add("task.flights", task->at("flights").size());
+  }
   if (const host::Json& flight = result.at("flight"); !flight.is_null()) {
     for (const char* name : kOfFlightAlone) {
       if (const auto value = flight.find(name); value != flight.end()) {
@@ -133,6 +137,9 @@ std::string why_no_value(const std::string& name, const std::vector<std::string>
   if (before == "flight.counters" || before == "flight.replan_counters" ||
       (is_of_step && before.ends_with(".counters"))) {
     return "";  // plugins choose the names of their counters
+  }
+  if (name == "task.bound_s" || name == "task.flights") {
+    return "";
   }
   if (!before.empty() && !is_of_flight && !is_of_step) {
     return "no run has a value '" + name +
