@@ -13,7 +13,7 @@ import tempfile
 import walk
 
 SOURCE, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-WALKED = {"docs/how-to/write-a-plugin.md", "docs/how-to/plan-with-the-kit.md",
+WALKED = {"docs/how-to/write-a-plugin.md", "docs/how-to/plan-with-the-kit.md", "docs/how-to/swarm-with-the-kit.md",
           *(f"docs/tutorials/{page.name}" for page in (SOURCE / "docs/tutorials").glob("*.md"))}
 NOT_RUN = {
     r"tools/(run|setup|test|docs|package)\b": "fetches packages, and builds all",

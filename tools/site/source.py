@@ -25,7 +25,7 @@ GROUPS = [
     ("How-to guides", [f"docs/how-to/{page}.md" for page in (
         "install", "survey-an-area", "view-results", "gallery", "exchange-missions", "flying", "tune-parameters",
         "published-scenarios", "run-large-studies", "write-a-plugin", "plan-with-the-kit",
-        "debug-a-plugin")]),
+        "swarm-with-the-kit", "debug-a-plugin")]),
     ("Reference", [*(f"docs/reference/{page}.md" for page in (
         "cli", "files", "objectives", "performance", "result", "route-formats", "plugins", "studies", "report", "statistics", "run-outcomes",
         "study-database", "check-plugin", "conformance", "abi", "api")), "framework/python/README.md"]),
