@@ -146,6 +146,7 @@ class Zones : public Environment {
     std::vector<std::size_t> above_ground_of;
     std::vector<Shape> keep_out;
     std::vector<std::vector<Shape>> keep_in;  ///< the parts of each zone
+    std::vector<bool> keep_in_lasts;          ///< true of one that is active all the time
     KeepInRule rule;
     std::vector<GroundPrism> above_ground;
     std::vector<std::string> above_ground_names;
@@ -194,21 +195,31 @@ class Zones : public Environment {
       }
     }
 
-    /// One for each zone that must hold the vehicle, or one of all zones.
+    /// One for each zone that must hold the vehicle, or one of all zones: of those that are active
+    /// all the time, since the others give no room before or after. Where none is, whatever is in
+    /// all of them is in each that is active.
     std::vector<KeepIn> kept_in() {
+      const bool any_lasts =
+          std::find(keep_in_lasts.begin(), keep_in_lasts.end(), true) != keep_in_lasts.end();
       std::vector<KeepIn> groups;
       std::vector<Shape> any;
-      for (std::vector<Shape>& zone : keep_in) {
-        if (rule == KeepInRule::any) {
-          any.insert(any.end(), zone.begin(), zone.end());
-        } else {
-          groups.emplace_back(std::move(zone));
+      for (std::size_t n = 0; n < keep_in.size(); ++n) {
+        if (rule == KeepInRule::all || !any_lasts) {
+          groups.emplace_back(std::move(keep_in[n]));
+        } else if (keep_in_lasts[n]) {
+          any.insert(any.end(), keep_in[n].begin(), keep_in[n].end());
         }
       }
-      if (rule == KeepInRule::any && !keep_in.empty()) {
+      if (rule == KeepInRule::any && any_lasts && !keep_in.empty()) {
         groups.emplace_back(std::move(any));
       }
       return groups;
+    }
+
+    /// True if zones with these periods are active all the time that counts.
+    bool lasts(const std::vector<formats::ZonePeriod>& periods) const {
+      return periods.empty() || (periods.front().from <= site.start_time_s &&
+                                 periods.front().until >= site.start_time_s + horizon_s);
     }
 
     void add(bool keeps_in, const std::vector<Shape>& parts, const std::string& name,
@@ -341,6 +352,7 @@ class Zones : public Environment {
             parts.insert(parts.end(), within.begin(), within.end());
           }
           add(zone.keeps_in(), parts, zone.name, std::move(closed));
+          keep_in_lasts.resize(keep_in.size(), lasts(zone.periods));
         } catch (const Error& error) {
           throw Error(name + ": '" + zone.name + "': " + error.what());
         }
@@ -435,6 +447,7 @@ class Zones : public Environment {
         return;
       }
       add(keeps_in, shapes, zone.id, std::move(closed));
+      keep_in_lasts.resize(keep_in.size(), lasts(time_window(zone.from, zone.until)));
       if (zone.cylinder && !keeps_in) {
         const auto& cylinder = std::get<Cylinder>(shapes.front());
         const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;

@@ -298,6 +298,28 @@ TEST(Zones, RefusesWrongParameters) {
   EXPECT_NE(refusal("{list: [{cylinder: {at_lonlat: [25, 60], radius_m: 5}}]}"), "");
 }
 
+/// A zone that is not active all the time gives no room before or after.
+TEST(Zones, KeepInZonesGiveRoomAllTheTime) {
+  const auto zone = [](int west, const char* window) {
+    const std::string w = std::to_string(west);
+    const std::string e = std::to_string(west + 100);
+    return "{kind: keep_in, polygon: {outline_m: [[" + w + ", 0], [" + e + ", 0], [" + e +
+           ", 100], [" + w + ", 100]]}" + window + "}";
+  };
+  const std::string later = ", from: 2019-06-17T12:30:00Z";
+  const std::string earlier = ", until: 2019-06-17T12:30:00Z";
+  const auto two =
+      zones("{list: [" + zone(0, "") + ", " + zone(90, later.c_str()) + "]}", site_at(kNoon));
+  EXPECT_GT(two->clearance({50, 50, 10}), 0);
+  EXPECT_LT(two->clearance({150, 50, 10}), 0);
+  const auto in_turn =
+      zones("{list: [" + zone(0, earlier.c_str()) + ", " + zone(90, later.c_str()) + "]}",
+            site_at(kNoon));
+  EXPECT_GT(in_turn->clearance({95, 50, 10}), 0);
+  EXPECT_LT(in_turn->clearance({50, 50, 10}), 0);
+  EXPECT_LT(in_turn->clearance({150, 50, 10}), 0);
+}
+
 TEST(Zones, ReadsFinnishZones) {
   ALTIPLAN_DATA_OR_SKIP(folder, "city");
   const auto restricted =
