@@ -57,6 +57,25 @@ TEST(Report, TellsThatRunsAreMissing) {
                   .summary.starts_with("8 of 16 planned runs are stored (50 %)"));
 }
 
+TEST(Report, TablesOverRunsThatAllSolved) {
+  StudyData data = study(2, 4);
+  data.file.budget.time_s = 5;
+  data.rows.back().outcome = "timed_out";  // of p1 in s3
+  const auto files = written(data, true);
+  const std::string common = files.at("tables/common.md");
+  EXPECT_NE(common.find("Values over the 3 pairs"), std::string::npos) << common;
+  EXPECT_NE(common.find("| Length, m | p0 | 3 | 1,010 | 1,010 | 1,000 | 1,020 |"),
+            std::string::npos)
+      << common;
+  const std::string par = files.at("tables/par.md");
+  EXPECT_NE(par.find("| p0 | 4 | 0.1000 | 0.1000 |"), std::string::npos) << par;
+  EXPECT_NE(par.find("| p1 | 4 | 2.575 | 12.57 |"), std::string::npos) << par;
+  EXPECT_NE(files.at("tables/par.tex").find("\\label{tab:par}"), std::string::npos);
+  EXPECT_EQ(written(data).count("tables/par.md"), 0U) << "times are omitted";
+  data.file.budget.time_s.reset();
+  EXPECT_EQ(written(data, true).count("tables/par.md"), 0U);
+}
+
 TEST(Report, OfFailuresAlone) {
   StudyData data = study(2, 3);
   for (RunRow& row : data.rows) {

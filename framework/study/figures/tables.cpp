@@ -51,7 +51,7 @@ std::string markdown_text(const Table& table) {
 std::string latex_text(const Table& table) {
   std::string out = "% needs booktabs and textcomp, and UTF-8\n\\begin{table}\n\\centering\n";
   out += "\\caption{" + latex(table.caption + (table.note.empty() ? "" : ". " + table.note)) +
-         "}\n\\begin{tabular}{" +
+         "}\n\\label{tab:" + table.name + "}\n\\begin{tabular}{" +
          joined_text(table.columns, "",
                      [](const Column& c) { return std::string(c.number ? "r" : "l"); }) +
          "}\n\\toprule\n";

@@ -57,6 +57,10 @@ Table claim_table(const Content& content);
 Table success_table(const Content& content);
 Table success_comparison_table(const Content& content);
 Table metric_table(const Content& content);
+/// The same over the pairs that all pipelines solved.
+Table common_table(const Content& content);
+/// PAR-2 and PAR-10, for a study with a time budget.
+Table par_table(const Content& content);
 Table comparison_table(const Content& content, const MetricAnalysis& metric);
 /// The pipelines of a trade: those of the front, and what it loses without each.
 Table pareto_table(const Content& content, const Trade& trade);

@@ -196,6 +196,34 @@ Table success_table(const Content& content) {
   return table;
 }
 
+Table par_table(const Content& content) {
+  const StudyData& data = content.data;
+  const double limit = data.file.budget.time_s.value_or(kNone);
+  Table table{
+      "par",
+      "Penalised average planning time: mean over all runs, of which one that did not solve "
+      "counts twice, or ten times, the time budget of " +
+          readable(limit) + " s",
+      columns({"pipeline", "#runs", "#PAR-2, s", "#PAR-10, s"}),
+      {}};
+  const std::size_t column = data.column("plan_time_s");
+  for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
+    const auto par = [&](double k) {
+      std::vector<double> times;
+      for (const RunRow& row : data.rows) {
+        if (row.pipeline == p) {
+          const bool has_time = row.solved() && column < row.values.size();
+          times.push_back(has_time ? row.values[column] : k * limit);
+        }
+      }
+      return number(mean(times));
+    };
+    table.rows.push_back(
+        {name(content, p), count(content.analysis.success[p].runs), par(2), par(10)});
+  }
+  return table;
+}
+
 Table success_comparison_table(const Content& content) {
   Table table{
       "success-pairs",
@@ -241,6 +269,41 @@ Table metric_table(const Content& content) {
            shown(mean(values)),
            shown(any ? *std::min_element(values.begin(), values.end()) : kNone),
            shown(any ? *std::max_element(values.begin(), values.end()) : kNone)});
+    }
+  }
+  return table;
+}
+
+Table common_table(const Content& content) {
+  const StudyData& data = content.data;
+  std::vector<Pair> common = pairs_of(data);
+  std::erase_if(common, [&](const Pair& pair) {
+    return std::any_of(pair.rows.begin(), pair.rows.end(),
+                       [&](std::size_t row) { return row == kNoRow || !data.rows[row].solved(); });
+  });
+  Table table{"common",
+              "Values over the " + counted(common.size(), "pair") +
+                  " (scenario, repetition) that all pipelines solved",
+              columns({"metric", "pipeline", "#pairs", "#median", "#mean", "#least", "#greatest"}),
+              {}};
+  for (const MetricAnalysis& metric : content.analysis.metrics) {
+    const std::size_t column = data.column(metric.metric);
+    for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
+      std::vector<double> values;
+      for (const Pair& pair : common) {
+        const double value = data.rows[pair.rows[p]].values[column];
+        if (std::isfinite(value)) {
+          values.push_back(value);
+        }
+      }
+      const auto shown = [&](double value) {
+        return Cell(readable_value(metric.metric, value), value);
+      };
+      const bool any = !values.empty();
+      table.rows.push_back({metric_label(metric.metric), name(content, p), count(values.size()),
+                            shown(median(values)), shown(mean(values)),
+                            shown(any ? *std::min_element(values.begin(), values.end()) : kNone),
+                            shown(any ? *std::max_element(values.begin(), values.end()) : kNone)});
     }
   }
   return table;

@@ -174,12 +174,16 @@ void write_tables(const Content& content, const fs::path& folder) {
   std::vector<Table> tables{success_table(content), metric_table(content), claim_table(content)};
   if (content.data.pipelines.size() > 1) {
     tables.push_back(success_comparison_table(content));
+    tables.push_back(common_table(content));
     for (const MetricAnalysis& metric : content.analysis.metrics) {
       tables.push_back(comparison_table(content, metric));
     }
   }
   for (const Trade& trade : content.analysis.trades) {
     tables.push_back(pareto_table(content, trade));
+  }
+  if (content.times && content.data.file.budget.time_s) {
+    tables.push_back(par_table(content));
   }
   if (!content.anytime.empty()) {
     tables.push_back(anytime_table(content));
