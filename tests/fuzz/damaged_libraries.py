@@ -37,6 +37,7 @@ GRID = "{cell_m: [10, 10, 10]}"
 PARAMETERS = {
     "city": "{generate: simple, seed: 1, cells: [20, 20, 20], cell_m: 5}",
     "grid_map": "{file: cells.map, cell_m: 10, height_m: 100}",
+    "gazebo": "{file: cylinder.world}",
     "mesh": "{file: cube.obj}",
     "octomap": "{file: voxel.bt, unknown: free}",
     "voxel_map": "{file: voxels.3dmap, cell_m: 10}",
@@ -79,6 +80,9 @@ FILES = {
     "voxels.3dmap": b"voxel 10 10 10\n5 5 5\n2 3 5\n",
     "voxel.bt": VOXEL,
     "cube.obj": CUBE.encode(),
+    "cylinder.world": b"<sdf version='1.6'><world name='w'><model name='m'><pose>50 20 0 0 0 0</pose>"
+                      b"<link name='l'><collision name='c'><geometry><cylinder><radius>5</radius>"
+                      b"<length>40</length></cylinder></geometry></collision></link></model></world></sdf>",
 }
 
 
