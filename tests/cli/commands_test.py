@@ -255,7 +255,7 @@ class Cli(CliCase):
 
     def test_a_mission_in_place_of_a_pipeline_is_told_what_takes_it(self):
         self.write("m.plan", '{"fileType": "Plan", "mission": {"items": [{"params": [null]}]}}')
-        for command in (["run"], ["validate"], ["explain"], ["edit", "--no-browser"]):
+        for command in (["run"], ["validate"], ["explain"]):
             _, error = self.call(*command, self.path("m.plan"), code=3)
             self.assertIn("m.plan: is a mission, expected a YAML file: `altiplan check` judges", error)
 

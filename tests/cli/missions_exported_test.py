@@ -112,8 +112,8 @@ class Missions(PlanCase):
                 self.assertLess(violation["at"], len(result["route"]))
         self.altiplan("view", "mission.plan", "-o", "page.html", code=2)
         self.altiplan("view", "mission.plan", "--terrain", TERRAIN, "--mp4", "film.mp4", code=2)
-        _, err = self.altiplan("edit", "mission.plan", code=3)
-        self.assertIn("`altiplan view` shows it", err)
+        _, err = self.altiplan("edit", "mission.plan", code=2)
+        self.assertIn("add --terrain DEM", err)
 
     def test_options(self):
         _, err = self.altiplan("export", "mission.plan", "-o", "other.plan", code=2)
