@@ -196,12 +196,13 @@ class Go(unittest.TestCase):
         self.zones("far.geojson", far)
         self.zones("empty.geojson")
         for name, said in (("swapped", "does latitude stand first in the file?"),
-                           ("far", "they cover longitude -80.3 to -80.29 and latitude 36.54"),
-                           ("empty", "holds nothing here: 0 keep-out and 0 keep-in zones")):
+                           ("far", "they cover longitude -80.3 to -80.29 and latitude 36.54")):
             _, err = self.call("go", *options, f"{name}.geojson")
             self.assertIn(f"warning: '{name}.geojson' (zones) holds nothing here", err)
             self.assertIn(said, err)
             self.assertEqual("latitude stand first" in err, name == "swapped")
+        _, err = self.call("go", *options, "empty.geojson", code=3)
+        self.assertIn("empty.geojson: contains no zone", err)
 
     def test_why_there_is_no_route(self):
         self.zones("wall.geojson", WALL, name="Wall")
