@@ -179,7 +179,7 @@ class Reproduce(case.StudyCase):
         self.assertIn("no paper is named '007'", self.refused("reproduce", "007"))
         self.assertIn("has no row 'trap_entris' (altiplan reproduce --list shows all); did you mean "
                       "'trap_entries'?", self.refused("reproduce", "001", "--row", "trap_entris"))
-        self.assertIn("--row: expected one paper, found 6", self.refused("reproduce", "all", "--row", "basic"))
+        self.assertIn("--row: expected one paper, found 7", self.refused("reproduce", "all", "--row", "basic"))
         _, err = self.call("reproduce", code=2)
         self.assertIn("PAPER is required", err)
         self.call("reproduce", "001", "--jobs", "0", code=2)
@@ -254,7 +254,7 @@ class Reproduce(case.StudyCase):
 
     def test_what_is_installed_is_valid(self):
         files = sorted((SOURCE / "configs/papers").glob("*.yaml"))
-        self.assertEqual(len(files), 6)
+        self.assertEqual(len(files), 7)
         self.call("validate", *files)
 
     def test_cheap_rows(self):
