@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -138,16 +139,16 @@ class Zones : public Environment {
   // Everything that the constructor computes, in order.
   struct Reader {
     Site site;
-    double horizon_s;
+    double horizon_s = 0;
     std::optional<Frame> frame;
-    bool in_time;
+    bool in_time = false;
     std::vector<kit::Hours::Times> times;  ///< at which a part is closed
     std::vector<std::size_t> keep_out_of;  ///< part of each zone; kAlways: of none
     std::vector<std::size_t> above_ground_of;
     std::vector<Shape> keep_out;
     std::vector<std::vector<Shape>> keep_in;  ///< the parts of each zone
     std::vector<bool> keep_in_lasts;          ///< true of one that is active all the time
-    KeepInRule rule;
+    KeepInRule rule = KeepInRule::any;
     std::vector<GroundPrism> above_ground;
     std::vector<std::string> above_ground_names;
     Drawing drawing;
@@ -157,6 +158,7 @@ class Zones : public Environment {
     std::string why_none;  // zones lie within the bounds
     std::vector<Threat> threats;
 
+    Reader() = default;
     Reader(const Params& params, const Site& where)
         : site(where),
           horizon_s(params.horizon_s),
@@ -245,16 +247,22 @@ class Zones : public Environment {
       return times.size() - 1;
     }
 
-    /// What of the zones is closed where `is_closed(part)`.
+    /// The keep-out zones of which `is_closed(part)`, as they are drawn; nothing to keep in.
     template <class IsClosed>
     Reader part(const IsClosed& is_closed) const {
-      Reader some = *this;
-      some.keep_out.clear();
-      some.above_ground.clear();
-      some.above_ground_names.clear();
-      for (std::size_t n = 0; n < keep_out.size(); ++n) {
+      Reader some;
+      some.site = site;
+      some.horizon_s = horizon_s;
+      some.frame = frame;
+      some.rule = rule;
+      some.drawing.keeps_in_all = drawing.keeps_in_all;
+      for (std::size_t n = 0, drawn = 0; n < keep_out.size(); ++n, ++drawn) {
+        while (drawing.shapes[drawn].role == Drawn::Role::keep_in) {
+          ++drawn;
+        }
         if (is_closed(keep_out_of[n])) {
           some.keep_out.push_back(keep_out[n]);
+          some.drawing.shapes.push_back(drawing.shapes[drawn]);
         }
       }
       for (std::size_t n = 0; n < above_ground.size(); ++n) {
@@ -263,6 +271,18 @@ class Zones : public Environment {
           some.above_ground_names.push_back(above_ground_names[n]);
         }
       }
+      return some;
+    }
+
+    /// The same with the zones to keep in.
+    template <class IsClosed>
+    Reader part_kept_in(const IsClosed& is_closed) const {
+      Reader some = part(is_closed);
+      some.keep_in = keep_in;
+      some.keep_in_lasts = keep_in_lasts;
+      std::copy_if(drawing.shapes.begin(), drawing.shapes.end(),
+                   std::back_inserter(some.drawing.shapes),
+                   [](const Drawn& one) { return one.role == Drawn::Role::keep_in; });
       return some;
     }
 
@@ -550,18 +570,22 @@ class ZonesInTime final : public Zones, public kit::Hours {
     all_ = all;
     before_ = *all->site.before;
     all_->site.before = &before_;
-    Reader outside = *all;
-    outside.keep_in.clear();
     for (std::size_t n = 0; n < all->times.size(); ++n) {
-      Reader one = outside.part([&](std::size_t part) { return part == n; });
+      Reader one = all->part([&](std::size_t part) { return part == n; });
       parts_.push_back({std::make_shared<const ZonePart>(std::move(one)), all->times[n]});
     }
   }
 
   static Reader at_some_time(Reader& all) {
-    return all.times.empty() ? std::move(all) : all.part([&](std::size_t part) {
+    if (all.times.empty()) {
+      return std::move(all);
+    }
+    Reader some = all.part_kept_in([&](std::size_t part) {
       return part == kAlways || kit::Hours::meet(all.times[part], 0, all.horizon_s);
     });
+    some.notes = all.notes;
+    some.threats = all.threats;
+    return some;
   }
 
   class ZonePart final : public Zones {
@@ -579,7 +603,7 @@ class ZonesInTime final : public Zones, public kit::Hours {
     std::shared_ptr<const Environment>& known = known_[closed];
     if (known == nullptr) {
       known = std::make_shared<const ZonePart>(
-          all_->part([&](std::size_t part) { return part == kAlways || closed[part]; }));
+          all_->part_kept_in([&](std::size_t part) { return part == kAlways || closed[part]; }));
     }
     return known;
   }
