@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "altiplan/formats/input_file.hpp"
@@ -66,17 +67,11 @@ MissionEditor::MissionEditor(PlanCheck check, host::Overrides overrides)
 
 host::PageAnswer MissionEditor::answer(const host::PageRequest& request) {
   const std::lock_guard lock(mutex_);
-  if (request.method == "GET" && request.path == "/") {
-    return page();
-  }
-  if (request.method == "GET" && request.path == "/plugins") {
-    return host::json_answer(Json::array());
-  }
-  return host::answer_to_post(request, [&](const std::string& path, const Json& wish) {
-    return path == "/edit"   ? host::json_answer(change(wish))
-           : path == "/save" ? host::json_answer(saved(wish))
-                             : host::nothing_there();
-  });
+  return host::answered(
+      request, {{"GET /", [&](const Json&) { return page(); }},
+                {"GET /plugins", [](const Json&) { return host::json_answer(Json::array()); }},
+                {"POST /edit", [&](const Json& wish) { return host::json_answer(change(wish)); }},
+                {"POST /save", [&](const Json& wish) { return host::json_answer(saved(wish)); }}});
 }
 
 host::PageAnswer MissionEditor::page() {
@@ -97,10 +92,13 @@ JudgedPlan MissionEditor::judged(const std::string& text, bool quick) const {
   return same;
 }
 
+bool MissionEditor::goes_on(std::uint64_t gesture) const {
+  return gesture != 0 && now_ > 0 && now().gesture == gesture;
+}
+
 std::string MissionEditor::moved(const std::string& place, const Vec3& by,
                                  std::uint64_t gesture) const {
-  const bool goes_on = gesture != 0 && now_ > 0 && now().gesture == gesture;
-  const State& before = states_[goes_on ? now_ - 1 : now_];
+  const State& before = states_[goes_on(gesture) ? now_ - 1 : now_];
   const auto item = std::find_if(before.items.begin(), before.items.end(),
                                  [&](const MovableItem& one) { return one.place == place; });
   if (item == before.items.end()) {
@@ -120,26 +118,27 @@ Json MissionEditor::change(const Json& wish) {
   const auto gesture = wish.value("gesture", std::uint64_t(0));
   const bool quick = wish.value("quick", false);
   std::size_t at = now_;
-  std::vector<State> states = states_;
+  std::optional<State> made;
   if (history == "undo") {
     at -= at > 0 ? 1 : 0;
   } else if (history == "redo") {
-    at += at + 1 < states.size() ? 1 : 0;
+    at += at + 1 < states_.size() ? 1 : 0;
   } else if (!history.empty()) {
     throw Error("history: expected undo or redo, found '" + history + "'");
   } else if (wish.contains("move")) {
     const Json& move = wish.at("move");
-    std::string text = moved(move.at("key"), host::moved_by(move.at("by")), gesture);
-    at += gesture != 0 && at > 0 && now().gesture == gesture ? 0 : 1;
-    states.resize(at);
-    states.push_back({std::move(text), gesture, {}});
+    made = State{moved(move.at("key"), host::moved_by(move.at("by")), gesture), gesture, {}};
+    at += goes_on(gesture) ? 0 : 1;
   }
   // What cannot be judged is not kept.
-  JudgedPlan judged_now = judged(states[at].text, quick);
+  JudgedPlan judged_now = judged(made ? made->text : states_[at].text, quick);
   const Frame& frame = opened_.world.truth.frame();
-  states[at].items = items_of(judged_now, frame);
+  if (made) {
+    made->items = items_of(judged_now, frame);
+    states_.resize(at);
+    states_.push_back(*std::move(made));
+  }
   judged_ = std::move(judged_now);
-  states_ = std::move(states);
   now_ = at;
   ++number_;
   Json answer = host::line_parts(judged_.line(frame), opened_.world);

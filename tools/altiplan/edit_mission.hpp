@@ -46,6 +46,8 @@ class MissionEditor {
   /// The mission with one item moved by so much from where it was before that drag. Throws Error
   /// for an item that there is not.
   std::string moved(const std::string& place, const Vec3& by, std::uint64_t gesture) const;
+  /// True if a change of that gesture replaces the last one.
+  bool goes_on(std::uint64_t gesture) const;
   const State& now() const { return states_[now_]; }
   /// What the page needs to know of the state.
   host::Json state() const;

@@ -33,22 +33,19 @@ std::string sentence_of(const std::exception& error) {
 
 std::string error_answer(const std::string& text) { return json_text(Json{{"error", text}}); }
 
-PageAnswer nothing_there() {
-  return {404, "application/json", error_answer("there is nothing at this address")};
-}
-
 PageAnswer json_answer(const Json& json) { return {200, "application/json", json_text(json)}; }
 
-PageAnswer answer_to_post(const PageRequest& request, const PageWork& work) {
-  if (request.method != "POST") {
-    return nothing_there();
+PageAnswer answered(const PageRequest& request, const PageWork& work) {
+  const auto found = work.find(request.method + " " + request.path);
+  if (found == work.end()) {
+    return {404, "application/json", error_answer("there is nothing at this address")};
   }
   try {
     const Json wish = request.body.empty() ? Json::object() : parse_json(request.body);
     if (!wish.is_object()) {
       throw Error("expected a JSON object");
     }
-    return work(request.path, wish);
+    return found->second(wish);
   } catch (const std::exception& error) {
     return {400, "application/json", error_answer(sentence_of(error))};
   }

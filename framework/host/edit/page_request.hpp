@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 
 #include "altiplan/geometry.hpp"
@@ -21,14 +22,12 @@ struct PageAnswer {
   std::string body;
 };
 
-/// The answer to a request, by its path and its wish, a JSON object; null: nothing is at that path.
-using PageWork = std::function<PageAnswer(const std::string& path, const Json& wish)>;
+/// The answers to wishes, JSON objects that may be empty, by method and path: "POST /edit".
+using PageWork = std::map<std::string, std::function<PageAnswer(const Json& wish)>>;
 
-/// The work's answer to a posted wish; 404 for another method, 400 with {"error": one line} for a
+/// The work's answer; 404 where there is none at that address, 400 with {"error": one line} for a
 /// wish that is not as expected, or that fails.
-PageAnswer answer_to_post(const PageRequest& request, const PageWork& work);
-/// The answer where nothing is at the address.
-PageAnswer nothing_there();
+PageAnswer answered(const PageRequest& request, const PageWork& work);
 PageAnswer json_answer(const Json& json);
 /// A scene with what can be edited, as the page that its own server answers.
 PageAnswer edited_page(const Json& scene);

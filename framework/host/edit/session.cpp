@@ -72,22 +72,18 @@ EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assi
 }
 
 PageAnswer EditSession::answer(const PageRequest& request) {
-  if (request.method == "GET" && request.path == "/plugins") {
+  const auto plugins = [&] {
     const PlanTask task{PlanTask::Kind::plugins};
-    return {200, "application/json", line_.finish(line_.begin(task)).value_or("[]")};
-  }
-  if (request.method == "GET" && request.path == "/") {
-    return answer_to_post({"POST", request.path, ""},
-                          [&](const std::string&, const Json&) { return page(); });
-  }
-  return answer_to_post(request, [&](const std::string& path, const Json& wish) {
-    return path == "/export"    ? exported(wish)
-           : path == "/edit"    ? json_answer(change(wish))
-           : path == "/compare" ? json_answer(compared())
-           : path == "/save"    ? json_answer(saved(wish))
-           : path == "/upload"  ? json_answer(uploaded(wish))
-                                : nothing_there();
-  });
+    return PageAnswer{200, "application/json", line_.finish(line_.begin(task)).value_or("[]")};
+  };
+  return answered(
+      request, {{"GET /", [&](const Json&) { return page(); }},
+                {"GET /plugins", [&](const Json&) { return plugins(); }},
+                {"POST /edit", [&](const Json& wish) { return json_answer(change(wish)); }},
+                {"POST /compare", [&](const Json&) { return json_answer(compared()); }},
+                {"POST /save", [&](const Json& wish) { return json_answer(saved(wish)); }},
+                {"POST /export", [&](const Json& wish) { return exported(wish); }},
+                {"POST /upload", [&](const Json& wish) { return json_answer(uploaded(wish)); }}});
 }
 
 PageAnswer EditSession::page() {
