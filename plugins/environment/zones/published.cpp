@@ -233,13 +233,12 @@ Published published_zones(const formats::Airspace& airspace, const PublishedRule
       continue;
     }
     timed += !site.has_start_time && has_times(zone);
-    kit::Hours::Times closed;
-    if (in_time && has_times(zone)) {
-      closed = closed_times(zone, site);
-    }
-    const bool is_used = !closed.empty() || !site.has_start_time ||
-                         (!(in_time && has_times(zone)) &&
-                          zone.is_active(site.start_time_s, site.start_time_s + horizon_s));
+    const bool is_in_time = in_time && has_times(zone);
+    kit::Hours::Times closed = is_in_time ? closed_times(zone, site) : kit::Hours::Times{};
+    const bool is_used =
+        !site.has_start_time ||
+        (is_in_time ? !closed.empty()
+                    : zone.is_active(site.start_time_s, site.start_time_s + horizon_s));
     if (!is_used) {
       ++published.inactive;
       continue;
