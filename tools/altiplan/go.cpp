@@ -25,16 +25,7 @@ struct GoArguments : FirstArguments {
   std::optional<std::string> wind;
   std::optional<std::string> parameters;
   bool copter = false;
-
-  /// Who flies it: in a wind an aeroplane is judged in that strength, from anywhere.
-  host::GateOptions gate() const {
-    host::GateOptions options;
-    options.flight.wind_mps = wish.wind ? wish.wind->speed_mps : 0;
-    if (parameters) {
-      options.flight.parameters = host::read_parameters(*parameters);
-    }
-    return options;
-  }
+  host::GateOptions gate;  ///< in a wind an aeroplane is judged in that strength, from anywhere
 };
 
 host::RouteWish wish_of(const GoArguments& arguments) {
@@ -115,7 +106,7 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
   const std::optional<host::Exported> plan = source ? exported(*source, route) : std::nullopt;
   if (plan) {
     host::write_file(folder / "route.plan",
-                     is_wing                    ? few_items(*source, route, *plan, arguments.gate())
+                     is_wing                    ? few_items(*source, route, *plan, arguments.gate)
                      : arguments.wish.speed_mps ? with_speed(*plan, *arguments.wish.speed_mps)
                                                 : *plan->text);
   }
@@ -125,10 +116,13 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
 }
 
 int go(GoArguments arguments) {
-  static_cast<void>(arguments.gate());  // a bad file is refused before anything is made
+  if (arguments.parameters) {
+    arguments.gate.flight.parameters = host::read_parameters(*arguments.parameters);
+  }
   if (arguments.wind) {
     const std::vector<double> wind = numbers(*arguments.wind).value();
     arguments.wish.wind = {wind.front(), wind.back()};
+    arguments.gate.flight.wind_mps = wind.front();
   }
   std::optional<Activity> activity("reading the model");
   const host::RouteWish wish = wish_of(arguments);
@@ -185,7 +179,7 @@ int go(GoArguments arguments) {
     return kNoRoute;
   }
   const host::PlanReport report =
-      judged(folder / "route.plan", first, arguments.overrides, arguments.gate());
+      judged(folder / "route.plan", first, arguments.overrides, arguments.gate);
   print_check(report);
   return report.passed() ? kDone : kNoRoute;
 }
