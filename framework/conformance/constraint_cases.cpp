@@ -318,7 +318,7 @@ void legs_through_refused_ones(const ConstraintBench& bench, Report& report) {
                            ", refused";
                   });
   };
-  for (int n = 0; n < 400 * bench.options.rounds; ++n) {
+  for (int n = 0; n < 1000 + 50 * bench.options.rounds; ++n) {
     RandomStream random = RandomStream(bench.options.seed).sub("through", std::uint64_t(n));
     Motion leg = random_leg(random, bench.options, scene);
     leg.before.reset();

@@ -65,7 +65,8 @@ class Connection:
         return header, numbers
 
     def _fill(self) -> None:
-        received = self._socket.recv(1 << 20)
+        # More would be mapped and unmapped by the allocator at each message, however short.
+        received = self._socket.recv(1 << 16)
         if not received:
             os._exit(0)  # the program has ended, or wants no more
         self._bytes += received
