@@ -165,7 +165,7 @@ steps:
     @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_constraint(self):
         self.altiplan("new", "constraint", "border", "--python")
-        self.assertIn("0 failed", self.altiplan("check-plugin", "border.py", "--jobs", 2).stdout)
+        self.assertIn("0 failed", self.altiplan("check-plugin", "border.py", "--time-limit", 300, "--jobs", 2).stdout)
 
 
 if __name__ == "__main__":

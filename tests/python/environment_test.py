@@ -160,13 +160,13 @@ class Layers(ScriptCase):
     @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_environment(self):
         self.altiplan("new", "environment", "poles", "--python")
-        self.assertIn("0 failed", self.altiplan("check-plugin", "poles.py", "--jobs", 2).stdout)
+        self.assertIn("0 failed", self.altiplan("check-plugin", "poles.py", "--time-limit", 300, "--jobs", 2).stdout)
 
     @unittest.skipIf(SANITIZED, "limits of time")
     def test_ground_and_cells_keep_the_contract(self):
         for body in (GROUND, "return altiplan.Cells([[[0, 1], [1, 0]]], 100)", IN_PYTHON):
             self.layer(body)
-            done = self.altiplan("check-plugin", "tested.py", "--jobs", 2, "--rounds", 5)
+            done = self.altiplan("check-plugin", "tested.py", "--time-limit", 300, "--jobs", 2, "--rounds", 5)
             self.assertIn("0 failed", done.stdout)
 
 

@@ -91,7 +91,7 @@ class Objectives(ScriptCase):
 
     def test_one_to_begin_with(self):
         self.altiplan("new", "objective", "towns", "--python")
-        self.altiplan("check-plugin", "towns.py")
+        self.altiplan("check-plugin", "towns.py", "--time-limit", 300)
         self.assertIn("towns", self.altiplan("plugins").stdout)
 
 

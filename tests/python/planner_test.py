@@ -273,7 +273,7 @@ class Commands(ScriptCase):
         self.altiplan("new", "planner", "bends", "--python")
         text = (self.folder / "bends.py").read_text()
         self.assertLess(len(text.splitlines()), 40)
-        self.assertIn("0 failed", self.altiplan("check-plugin", "bends.py", "--jobs", 2).stdout)
+        self.assertIn("0 failed", self.altiplan("check-plugin", "bends.py", "--time-limit", 300, "--jobs", 2).stdout)
         pipeline = self.write("p.yaml", STEP.format(step="{plan: bends}"))
         self.assertEqual(self.result(pipeline)[0]["status"], "solved")
         done = self.altiplan("new", "planner", "bends", "--python", code=2)

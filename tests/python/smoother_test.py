@@ -65,7 +65,7 @@ class Smoothers(ScriptCase):
     @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_smoother(self):
         self.altiplan("new", "smoother", "drops", "--python")
-        self.assertIn("0 failed", self.altiplan("check-plugin", "drops.py", "--jobs", 2).stdout)
+        self.assertIn("0 failed", self.altiplan("check-plugin", "drops.py", "--time-limit", 300, "--jobs", 2).stdout)
 
 
 if __name__ == "__main__":

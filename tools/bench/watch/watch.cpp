@@ -24,7 +24,7 @@ namespace altiplan::bench {
 namespace {
 
 constexpr int kRounds = 9;
-constexpr double kPass_s = 0.02;    ///< minimum time of a measurement
+constexpr double kPassSeconds = 0.02;    ///< minimum time of a measurement
 constexpr double kFallen = 0.85;    ///< of the stored ratio
 constexpr std::size_t kLegs = 128;  ///< queries of a row that asks a world
 constexpr std::size_t kWays = 6;    ///< queries of a row that searches
@@ -48,7 +48,7 @@ double seconds_of(const Pass& pass, double& sum) {
     sum = pass();
     ++passes;
     taken = thread_s() - began;
-  } while (taken < kPass_s);
+  } while (taken < kPassSeconds);
   return taken / passes;
 }
 
