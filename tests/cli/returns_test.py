@@ -132,6 +132,41 @@ class Returns(PlanCase):
         self.assertIn("not written: found no return height", err)
         self.assertFalse((self.folder / "cure.param").exists())
 
+    def test_rally_points_that_cure(self):
+        """Where no return height does: below a ceiling, which the flight over the ridge keeps."""
+        for vehicle in (COPTER, PX4_COPTER, PLANE):
+            with self.subTest(vehicle=vehicle):
+                way = self.beyond() if vehicle != PLANE else [(16, 300, 0, 260), (16, 1300, 0, 260), (16, 2400, 0, 260)]
+                limits = ("--max-agl", "270") if vehicle != PLANE else ()
+                told = self.returns(vehicle, way, *limits, "--fix-returns", "cured.plan", code=1)
+                self.assertEqual(told["returns"]["verdict"], "fail")
+                cured = json.loads((self.folder / "cured.plan").read_text())
+                points = cured["rallyPoints"]["points"]
+                self.assertGreaterEqual(len(points), 1)
+                self.assertLessEqual(len(points), 3)
+                out, _ = self.call("cured.plan", "--terrain", "ridge.asc", *limits, "--returns", "--json", code=0)
+                self.assertEqual(json.loads(out)["returns"]["verdict"], "pass")
+                # None is needless, and all else is as it was.
+                for n in range(len(points)):
+                    fewer = json.loads(json.dumps(cured))
+                    del fewer["rallyPoints"]["points"][n]
+                    (self.folder / "fewer.plan").write_text(json.dumps(fewer))
+                    self.call("fewer.plan", "--terrain", "ridge.asc", *limits, "--returns", code=1)
+                before = json.loads((self.folder / "mission.plan").read_text())
+                del before["rallyPoints"], cured["rallyPoints"]
+                self.assertEqual(cured, before)
+
+    def test_what_a_cure_is_written_to(self):
+        self.returns(COPTER, self.beyond(), code=1)
+        check = ("--terrain", "ridge.asc", "--returns", "--fix-returns")
+        for mission, file, says in (("mission.plan", "cure.waypoints", "expected a name that ends in .param"),
+                                    ("mission.plan", "cure", "expected a name that ends in .param"),
+                                    ("mission.waypoints", "cure.plan", "rally points are added to a .plan, found")):
+            (self.folder / "mission.waypoints").write_text("QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t47\t8\t400\t1\n")
+            _, err = self.call(mission, *check, file, code=3)
+            self.assertIn(says, err)
+            self.assertFalse((self.folder / file).exists())
+
     def test_a_rally_point_beyond_the_ridge(self):
         told = self.returns(COPTER, self.beyond(), rally=[(1900, 60, 20)], code=0)
         self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])

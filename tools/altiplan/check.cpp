@@ -239,7 +239,8 @@ void add_check(App& app, Action& action) {
   add_battery(command, arguments.mission.plan, outputs->back());
   command
       .add_option("--fix-returns FILE", arguments.mission.plan.fixed_returns,
-                  "with --returns: write the minimum return height with which all pass (.param)")
+                  "with --returns: write the minimum return height with which all pass "
+                  "(.param), or the mission with rally points (.plan)")
       ->needs(outputs->back());
   command
       .add_flag("--survey", arguments.survey,

@@ -322,25 +322,36 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
   }
 }
 
-/// Writes the parameter that cures the returns, or says why not.
-void fix_returns(const PlanCheck& plan, const PlanReport& report,
+/// Writes what cures the returns, rally points in a copy of the mission or a parameter, or says why
+/// not.
+void fix_returns(const PlanCheck& plan, const PlanReport& report, const std::string& text,
                  const formats::MissionFile& mission, const host::Mission& world) {
+  const std::string& file = *plan.fixed_returns;
   if (report.passed()) {
-    warn(*plan.fixed_returns + ": not written: the returns pass as they are");
+    warn(file + ": not written: the returns pass as they are");
     return;
   }
-  const auto cure = busy("curing the returns", [&] {
-    return host::cure_of_returns(plan.plan, mission, world, plan.gate);
+  const bool by_rally = std::filesystem::path(file).extension() == ".plan";
+  std::string words;
+  busy("curing the returns", [&] {
+    if (by_rally) {
+      if (const auto cured = host::with_rally_cure(plan.plan, mission, world, plan.gate)) {
+        host::write_file(file, host::with_rally_points(text, cured->rally));
+        const std::size_t added = cured->rally.size() - mission.rally.size();
+        words = std::to_string(added) + (added == 1 ? " rally point" : " rally points") +
+                (cured->rally.size() > added ? " more" : "");
+      }
+    } else if (const auto cure = host::cure_of_returns(plan.plan, mission, world, plan.gate)) {
+      host::write_file(file, cure->parameter + "," + fixed(cure->value, 0) + "\n");
+      words = cure->parameter + " " + fixed(cure->value, 0);
+    }
+    return 0;
   });
-  if (!cure) {
-    warn(*plan.fixed_returns +
-         ": not written: found no return height with which the mission and its returns pass");
-    return;
-  }
-  host::write_file(*plan.fixed_returns, cure->parameter + "," + fixed(cure->value, 0) + "\n");
-  if (!plan.json) {
-    std::printf("fixed: %s passes: %s %s\n", plan.fixed_returns->c_str(), cure->parameter.c_str(),
-                fixed(cure->value, 0).c_str());
+  if (words.empty()) {
+    warn(file + ": not written: found no " + (by_rally ? "rally points" : "return height") +
+         " with which the mission and its returns pass");
+  } else if (!plan.json) {
+    std::printf("fixed: %s passes: %s\n", file.c_str(), words.c_str());
   }
 }
 
@@ -385,6 +396,21 @@ void expect_outputs(const PlanCheck& plan, const std::vector<std::filesystem::pa
       others.push_back(std::filesystem::absolute(**file).lexically_normal().string());
       expect_apart(others.back(), option, {others.begin(), others.end() - 1});
     }
+  }
+}
+
+/// Throws Error where what cures the returns cannot be written so.
+void expect_kind_of_cure(const PlanCheck& plan) {
+  const std::filesystem::path file(plan.fixed_returns.value_or("cure.param"));
+  const std::string ending = file.extension().string();
+  if (ending != ".plan" && !ending.starts_with(".par")) {
+    throw Error("--fix-returns " + file.string() +
+                ": expected a name that ends in .param, for a return height, or in .plan, for the "
+                "mission with rally points");
+  }
+  if (ending == ".plan" && std::filesystem::path(plan.plan).extension() != ".plan") {
+    throw Error("--fix-returns " + file.string() + ": rally points are added to a .plan, found " +
+                plan.plan);
   }
 }
 
@@ -487,7 +513,7 @@ int check(PlanCheck plan, const std::optional<host::Config>& scenario,
     fix(plan, report, text, mission, world);
   }
   if (plan.fixed_returns) {
-    fix_returns(plan, report, mission, world);
+    fix_returns(plan, report, text, mission, world);
   }
   return report.passed() ? kDone : kNoRoute;
 }
@@ -565,6 +591,7 @@ int check_plan(const PlanCheck& given, const host::Overrides& overrides) {
   if (plan.scenario) {
     scenario = host::load_scenario(*plan.scenario, overrides);
   }
+  expect_kind_of_cure(plan);
   expect_outputs(plan, scenario ? scenario->files : decltype(scenario->files){});
   try {
     return check(plan, scenario, overrides);

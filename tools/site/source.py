@@ -23,7 +23,7 @@ GROUPS = [
     ("Tutorials", [f"docs/tutorials/{page}.md" for page in (
         "first-route", "first-plugin", "first-study", "reproduce-a-paper")]),
     ("How-to guides", [f"docs/how-to/{page}.md" for page in (
-        "install", "survey-an-area", "view-results", "gallery", "exchange-missions", "flying", "tune-parameters",
+        "install", "survey-an-area", "view-results", "gallery", "exchange-missions", "way-home", "flying", "tune-parameters",
         "published-scenarios", "run-large-studies", "write-a-plugin", "plan-with-the-kit",
         "swarm-with-the-kit", "debug-a-plugin")]),
     ("Reference", [*(f"docs/reference/{page}.md" for page in (

@@ -108,4 +108,16 @@ std::string changed_plan(const std::string& text, formats::MissionFile::Format f
       throw Error("expected a .plan or .waypoints file: in other formats no item can be changed");
   }
 }
+
+std::string with_rally_points(const std::string& text,
+                              const std::vector<formats::MissionPoint>& points) {
+  Json plan = parse_json(text);
+  Json& rally = plan["rallyPoints"];
+  rally["version"] = 2;
+  rally["points"] = Json::array();
+  for (const formats::MissionPoint& point : points) {
+    rally["points"].push_back({point.lat, point.lon, point.altitude_m});
+  }
+  return plan.dump(4) + "\n";
+}
 }  // namespace altiplan::host

@@ -21,4 +21,9 @@ struct ChangedItem {
 /// Error for other formats.
 std::string changed_plan(const std::string& text, formats::MissionFile::Format format,
                          const std::vector<ChangedItem>& changes);
+
+/// The text of a `.plan` file with these rally points, above home, in place of its own and all else
+/// as it is.
+std::string with_rally_points(const std::string& text,
+                              const std::vector<formats::MissionPoint>& points);
 }  // namespace altiplan::host

@@ -47,8 +47,9 @@ struct RefusedReturn {
   std::size_t first = 0;  ///< commands that are carried out at its beginning and at its end
   std::size_t last = 0;
   double worst_s = 0;
-  std::size_t worst = 0;  ///< command
-  Finding finding;        ///< of the return at the worst time
+  std::size_t worst = 0;     ///< command
+  Finding finding;           ///< of the return at the worst time
+  std::vector<Vec3> places;  ///< up to nine along it, at their greatest heights, local metres
 };
 
 /// The verdict on the failsafe returns of a mission.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/return_cure.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "host/gate/returns.hpp"
@@ -59,5 +60,168 @@ std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats
                       !options.flight.parameters.contains(height.name);
   return is_old ? ReturnCure{height.old_name, above * height.old_units}
                 : ReturnCure{height.name, double(above)};
+}
+
+namespace {
+
+using formats::MissionFile;
+using formats::MissionPoint;
+
+/// Seconds of the flight without a way home, and one for each stretch of them; infinite where that
+/// is not judged.
+double refused_time(const ReturnsReport& report) {
+  double time = report.unjudged.empty() ? 0 : kInfinity;
+  for (const RefusedReturn& stretch : report.refused) {
+    time += stretch.to_s - stretch.from_s + 1;
+  }
+  return time;
+}
+
+/// Puts rally points where they leave the least of the flight without a way home, one by one.
+class RallyCure {
+ public:
+  RallyCure(MissionFile plan, const Mission& world, const GateOptions& options,
+            formats::Autopilot autopilot)
+      : plan_(std::move(plan)), world_(world), options_(options), autopilot_(autopilot) {
+    const auto [x, y] = world.truth.frame().to_local(plan_.home->lon, plan_.home->lat);
+    home_z_ = plan_.home->frame == formats::AltitudeFrame::sea
+                  ? plan_.home->altitude_m
+                  : world.truth.ground(x, y).value_or(0) + plan_.home->altitude_m;
+  }
+
+  /// False if no points cure the returns.
+  bool find() {
+    const std::size_t own = plan_.rally.size();
+    ReturnsReport report = judge_returns(plan_, world_, options_);
+    while (report.verdict != Verdict::pass) {
+      if (plan_.rally.size() >= maximum() || !add_one(report)) {
+        return false;
+      }
+    }
+    for (std::size_t n = plan_.rally.size(); n-- > own;) {
+      MissionFile fewer = plan_;
+      fewer.rally.erase(fewer.rally.begin() + std::ptrdiff_t(n));
+      if (judge_returns(fewer, world_, options_).verdict == Verdict::pass) {
+        plan_ = std::move(fewer);
+      }
+    }
+    return true;
+  }
+  const MissionFile& plan() const { return plan_; }
+
+ private:
+  /// As many as an autopilot stores (AP_Rally by board: ArduCopter 46, ArduPlane 50; PX4 32).
+  std::size_t maximum() const {
+    return autopilot_.is_px4() ? 32 : autopilot_.is_copter() ? 46 : 50;
+  }
+
+  /// Adds the best point for the longest stretch: the first that clears it, else the one that
+  /// leaves least.
+  bool add_one(ReturnsReport& report) {
+    const double before = refused_time(report);
+    const RefusedReturn& stretch = *std::max_element(
+        report.refused.begin(), report.refused.end(),
+        [](const auto& a, const auto& b) { return a.to_s - a.from_s < b.to_s - b.from_s; });
+    const double clears = before - (stretch.to_s - stretch.from_s + 1);
+    double least = before;
+    ReturnsReport best;
+    std::optional<MissionPoint> point;
+    for (const MissionPoint& candidate : candidates(stretch.places)) {
+      plan_.rally.push_back(candidate);
+      ReturnsReport with = judge_returns(plan_, world_, options_);
+      plan_.rally.pop_back();
+      if (const double left = refused_time(with); left < least) {
+        least = left;
+        best = std::move(with);
+        point = candidate;
+      }
+      if (least <= clears) {
+        break;
+      }
+    }
+    if (point) {
+      plan_.rally.push_back(*point);
+      report = std::move(best);
+    }
+    return point.has_value();
+  }
+
+  /// From the middle of the stretch outward, at one height after another.
+  std::vector<MissionPoint> candidates(const std::vector<Vec3>& places) const {
+    std::vector<MissionPoint> points;
+    for (const double rise : {0.0, 40.0, 100.0}) {
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const std::size_t middle = places.size() / 2;
+        const std::size_t at = k % 2 == 0 ? middle + k / 2 : middle - (k + 1) / 2;
+        if (const auto place = at < places.size() ? place_near(places[at]) : std::nullopt) {
+          points.push_back(point_at(*place, rise));
+        }
+      }
+    }
+    return points;
+  }
+
+  MissionPoint point_at(const Vec3& place, double rise) const {
+    constexpr double kUnits = 1e7;  // of a degree, as autopilots store it
+    const auto [lon, lat] = world_.truth.frame().to_lonlat(place.x(), place.y());
+    return {std::round(lon * kUnits) / kUnits, std::round(lat * kUnits) / kUnits,
+            std::ceil(place.z() - home_z_ + rise), formats::AltitudeFrame::home};
+  }
+
+  /// An aeroplane circles where it flies; a copter lands on the nearest flat ground. Its height is
+  /// where it then begins to come down (ArduPilot), or the ground itself (PX4).
+  std::optional<Vec3> place_near(const Vec3& place) const {
+    constexpr double kAbove = 15;  // metres: ArduCopter's own return height
+    if (!autopilot_.is_copter()) {
+      return place;
+    }
+    for (const double aside : {0.0, 30.0, 60.0, 120.0, 240.0}) {
+      for (int eighth = 0; eighth < (aside > 0 ? 8 : 1); ++eighth) {
+        const double angle = eighth * kPi / 4;
+        const double x = place.x() + aside * std::cos(angle);
+        const double y = place.y() + aside * std::sin(angle);
+        if (const std::optional<double> ground = flat_ground(x, y)) {
+          return Vec3(x, y, *ground + (autopilot_.is_px4() ? 0 : kAbove));
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Its height, where no ground within 10 m differs by more than a tenth of that.
+  std::optional<double> flat_ground(double x, double y) const {
+    constexpr double kAside = 10;  // metres
+    const std::optional<double> middle = world_.truth.ground(x, y);
+    for (int eighth = 0; middle && eighth < 8; ++eighth) {
+      const double angle = eighth * kPi / 4;
+      const auto beside =
+          world_.truth.ground(x + kAside * std::cos(angle), y + kAside * std::sin(angle));
+      if (!beside || std::abs(*beside - *middle) > kAside / 10) {
+        return std::nullopt;
+      }
+    }
+    return middle;
+  }
+
+  MissionFile plan_;
+  const Mission& world_;
+  const GateOptions& options_;
+  formats::Autopilot autopilot_;
+  double home_z_ = 0;
+};
+}  // namespace
+
+std::optional<MissionFile> with_rally_cure(const std::string& file, const MissionFile& plan,
+                                           const Mission& world, const GateOptions& options) {
+  const auto autopilots =
+      possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
+  if (plan.commands.empty() || autopilots.size() != 1 || !plan.home) {
+    return std::nullopt;
+  }
+  RallyCure cure(plan, world, options, autopilots.front());
+  if (!cure.find() || !judge_plan(file, cure.plan(), world, options).passed()) {
+    return std::nullopt;
+  }
+  return cure.plan();
 }
 }  // namespace altiplan::host

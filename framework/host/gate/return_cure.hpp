@@ -16,4 +16,13 @@ struct ReturnCure {
 /// where no height cures them, or several kinds of autopilot may fly the mission.
 std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats::MissionFile& plan,
                                           const Mission& world, const GateOptions& options);
+
+/// The mission with rally points beside its own with which it and its failsafe returns pass, judged
+/// again: none of them is needless. They lie on the flight, a copter's on ground beside it that is
+/// flat by the model, for there it lands. None where no points cure them, up to the number that the
+/// autopilot stores.
+std::optional<formats::MissionFile> with_rally_cure(const std::string& file,
+                                                    const formats::MissionFile& plan,
+                                                    const Mission& world,
+                                                    const GateOptions& options);
 }  // namespace altiplan::host

@@ -18,6 +18,7 @@ namespace {
 constexpr double kCoarse = 60;         // metres: radius
 constexpr double kFinest[] = {8, 16};  // metres: length, of a copter's and of an aeroplane's
 constexpr std::size_t kSampled = 40;   // places of a stretch, of which the worst is told
+constexpr std::size_t kPlaces = 9;     // of a stretch that are kept
 constexpr double kJoins = 3;           // seconds between refused places that are one stretch
 
 /// The smallest disc about the middle of the strips' box, with their reach.
@@ -286,6 +287,13 @@ class ReturnJudge {
       stretch.worst_s = (worst->from_s + worst->to_s) / 2;
       stretch.worst = worst->command;
       stretch.finding = finding_of(*worst, gap);
+      for (std::size_t k = 0; k < kPlaces; ++k) {
+        const Whereabouts& place = refused_[first + k * (n - first) / kPlaces].place;
+        const Vec3 there(place.at.x(), place.at.y(), place.high_m);
+        if (stretch.places.empty() || stretch.places.back() != there) {
+          stretch.places.push_back(there);
+        }
+      }
       report_.refused.push_back(std::move(stretch));
     }
   }
