@@ -2,11 +2,12 @@
 """check_plan_test.py PROGRAM SOURCES: verdicts of `altiplan check PLAN --terrain …`."""
 import json
 import pathlib
+import subprocess
 import re
 import sys
 import unittest
 
-from plan_case import POINTS, SOURCES, TERRAIN, PlanCase, item, plan_of
+from plan_case import POINTS, PROGRAM, SOURCES, TERRAIN, PlanCase, item, plan_of
 
 UTM = """PROJCS["WGS 84 / UTM zone 11N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],
 PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],
@@ -282,7 +283,7 @@ class CheckPlan(PlanCase):
             if code == 0:
                 self.assertEqual(json.loads(out)["parameters"]["WP_SPD"], 20, text)
             else:
-                self.assertIn("p:1: expected a parameter" if text else "p: contains no parameters", err)
+                self.assertRegex(err, r"p:1: (WP_SPD: )?expected a" if text else "p: contains no parameters")
 
     def test_parameters_of_another_autopilot_are_not_taken(self):
         items = [item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)]
@@ -306,6 +307,71 @@ class CheckPlan(PlanCase):
         one, _ = self.call("mission.plan", "--terrain", TERRAIN, "--min-agl", "10", code=0)
         two, _ = self.call("mission.plan", "--terrain", "tiles", "--terrain", TERRAIN, "--min-agl", "10", code=0)
         self.assertEqual(one.splitlines()[0], two.splitlines()[0])
+
+    def test_the_model_below_the_mission_gives_the_frame(self):
+        """Models of other regions that are named first change no figure, and hide no zone."""
+        self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
+        self.zones("zone.json", self.around(*POINTS[-1][:2]), 3000)
+        for n, (lon, lat) in enumerate(((8, 47), (-70, 60), (-84.4, 57))):
+            (self.folder / f"far{n}.asc").write_text(
+                f"ncols 4\nnrows 4\nxllcorner {lon}\nyllcorner {lat}\ncellsize 0.001\n" + "500 500 500 500\n" * 4)
+            (self.folder / f"far{n}.prj").write_text(
+                'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+                'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
+            both = ("--terrain", f"far{n}.asc", "--terrain", TERRAIN)
+            for more, code in (((), 0), (("--airspace", "zone.json"), 1)):
+                one, _ = self.call("mission.plan", "--terrain", TERRAIN, *more, "--json", code=code)
+                two, _ = self.call("mission.plan", *both, *more, "--json", code=code)
+                one, two = json.loads(one), json.loads(two)
+                for key in ("verdict", "violations", "time_s", "parts"):
+                    self.assertEqual(one[key], two[key])
+        # A scenario says itself which layer gives the frame.
+        def scenario(start, goal):
+            (self.folder / "far.yaml").write_text(
+                f"altiplan: 1\nenvironment:\n  - terrain: {{file: far0.asc}}\n  - terrain: {{file: {TERRAIN}}}\n    id: model\n"
+                "  - zones: {file: zone.json}\nvolume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n"
+                f"start: {{at_lonlat: {start}}}\ngoal: {{at_lonlat: {goal}}}\n")
+
+        scenario([8.001, 47.001, 600], [8.002, 47.002, 600])
+        out, _ = self.call("mission.plan", "--scenario", "far.yaml", code=1)
+        self.assertRegex(out, r"\n  the mission: lengths are off by up to [0-9.]+ % where the mission flies")
+        scenario(POINTS[0], POINTS[-1])
+        (self.folder / "p.yaml").write_text("altiplan: 1\nscenario: far.yaml\nsteps:\n  - plan: astar\n")
+        done = subprocess.run([PROGRAM, "run", "p.yaml"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("start: lies more than 20 degrees from the origin of the world's frame", done.stderr)
+
+    def test_a_model_without_a_coordinate_system(self):
+        self.write([item(point, n + 1) for n, point in enumerate(POINTS)])
+        (self.folder / "bare.asc").write_text(
+            "ncols 4\nnrows 4\nxllcorner -85\nyllcorner 36\ncellsize 0.5\n" + "500 500 500 500\n" * 4)
+        _, err = self.call("mission.plan", "--terrain", "bare.asc", code=3)
+        self.assertIn("--terrain: bare.asc: the file names no coordinate system: give --crs EPSG:CODE", err)
+        self.call("mission.plan", "--terrain", "bare.asc", "--crs", "EPSG:4326", code=0)
+
+    def test_no_cure_that_an_autopilot_refuses(self):
+        """Below home a PX4 takes off to nothing: such a mission would fly through no zone."""
+        lon, lat, _ = POINTS[0]
+        take_off = dict(item([lon, lat, 50], 1), command=22, frame=3)
+        self.zones("low.json", self.around(lon, lat), 1500)
+        self.write([take_off, dict(item([lon + 0.01, lat, 60], 2), frame=3)], firmwareType=12,
+                   plannedHomePosition=[lat, lon, 400])
+        out, _ = self.call("mission.plan", "--terrain", TERRAIN, "--airspace", "low.json", code=1)
+        self.assertNotIn("cure: lower item 1", out)
+        take_off["params"][6] = -5
+        self.write([take_off, dict(item([lon + 0.01, lat, 60], 2), frame=3)], firmwareType=12,
+                   plannedHomePosition=[lat, lon, 400])
+        out, _ = self.call("mission.plan", "--terrain", TERRAIN, code=1)
+        self.assertIn("takes off to a height above home alone, and this is 5.0 m below it", out)
+
+    def test_parameters_that_decide_nothing(self):
+        self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])
+        (self.folder / "p.param").write_text("WPNAV_SPED,500\n")
+        _, err = self.call("mission.plan", "--terrain", TERRAIN, "--params", "p.param", code=0)
+        self.assertIn("p.param: none of its parameters decides how a mission is flown", err)
+        (self.folder / "p.param").write_text("RTL_ALT,abc\n")
+        _, err = self.call("mission.plan", "--terrain", TERRAIN, "--params", "p.param", code=3)
+        self.assertIn("p.param:1: RTL_ALT: expected a number, found 'abc'", err)
 
     def test_a_plan_in_a_scenario(self):
         scenario = str(pathlib.Path(SOURCES) / "configs/scenarios/jacksboro_ridge.yaml")

@@ -367,7 +367,7 @@ void add_notes(PlanReport& report, const host::Mission& world) {
     for (std::size_t i = 0; i < route.size(); ++i) {
       nearest = std::min(nearest, layer.environment->clearance(route[i]));
     }
-    if (nearest > kFar) {
+    if (nearest > kFar && layer.environment->ground() == nullptr) {
       report.notes.insert(report.notes.begin(),
                           layer.id + ": no zone within 50 km of the route: of another region?");
     }
@@ -461,6 +461,10 @@ PlanCheck prepared(PlanCheck plan) {
   }
   if (plan.parameters) {
     plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
+    if (!host::decide_a_flight(plan.gate.flight.parameters)) {
+      warn(*plan.parameters +
+           ": none of its parameters decides how a mission is flown: are their names right?");
+    }
   }
   return plan;
 }

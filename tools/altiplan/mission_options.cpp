@@ -105,7 +105,8 @@ PlanCheck checked_plan(const MissionOptions& mission, const std::string& file) {
 }
 
 bool is_mission(const MissionOptions& mission, const std::string& file) {
-  if (mission.plan.terrain.empty() && host::is_mission_name(file)) {
+  if (mission.plan.terrain.empty() && host::is_mission_name(file) &&
+      std::filesystem::exists(file)) {
     throw UsageError{file + " is a mission: add --terrain DEM, over which it is judged"};
   }
   return !mission.plan.terrain.empty();

@@ -83,15 +83,56 @@ double horizon_s(const PlanCheck& plan, const formats::MissionFile& mission) {
                   kLongest);
 }
 
+/// The models, first the one below the most of the mission: it gives the world its frame. Throws
+/// Error for one that names no coordinate system, and none is given.
+std::vector<std::string> models_about(const PlanCheck& plan, const formats::MissionFile& mission,
+                                      const host::Overrides& overrides) {
+  std::vector<std::string> files = models_of(plan);
+  const auto is_text = [](const std::string& file) {
+    return std::filesystem::path(file).extension() == ".asc";
+  };
+  if (files.size() == 1 && (!plan.crs.empty() || !is_text(files.front()))) {
+    return files;
+  }
+  host::Registry registry(host::Registry::search_path(overrides.plugin_path));
+  const std::vector<LonLat> positions = positions_of(mission);
+  std::vector<std::pair<std::ptrdiff_t, std::string>> ranked;
+  for (const std::string& file : files) {
+    const host::Tile tile = [&] {
+      try {
+        return host::read_tile(file, plan.crs, registry);
+      } catch (const PluginError&) {
+        throw;
+      } catch (const Error& error) {
+        throw Error(std::string("--terrain: ") + error.what());
+      }
+    }();
+    if (plan.crs.empty() && !tile.crs.empty()) {
+      throw Error("--terrain: " + file +
+                  ": the file names no coordinate system: give --crs EPSG:CODE, EPSG:4326 for "
+                  "longitude and latitude");
+    }
+    ranked.emplace_back(std::count_if(positions.begin(), positions.end(),
+                                      [&](const LonLat& at) { return tile.holds(at[0], at[1]); }),
+                        file);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::transform(ranked.begin(), ranked.end(), files.begin(),
+                 [](const auto& one) { return one.second; });
+  return files;
+}
+
 /// The scenario that the options describe.
-std::string world_text(const PlanCheck& plan, const formats::MissionFile& mission) {
+std::string world_text(const PlanCheck& plan, const formats::MissionFile& mission,
+                       const host::Overrides& overrides) {
   // A void is closed: whatever flies over it flies into the ground.
   const std::string voids = plan.fills_voids
                                 ? "voids: neighbours"
                                 : "voids: fill_m, fill_m: " + host::exact_json_text(kClosed);
   std::string text = "altiplan: 1\nenvironment:\n";
   std::set<std::string> ids;
-  for (const std::string& file : models_of(plan)) {
+  for (const std::string& file : models_about(plan, mission, overrides)) {
     std::string id = "terrain";
     while (!ids.insert(id).second) {
       id = "terrain " + std::to_string(ids.size() + 1);
@@ -162,8 +203,8 @@ std::vector<std::string> models_of(const PlanCheck& plan) {
 
 host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission,
                       const host::Overrides& overrides) {
-  host::Config config =
-      host::load_scenario_text(world_text(plan, mission), std::string(kWorld), overrides);
+  host::Config config = host::load_scenario_text(world_text(plan, mission, overrides),
+                                                 std::string(kWorld), overrides);
   config.is_only_judged = true;
   config.about = positions_of(mission);
   return config;

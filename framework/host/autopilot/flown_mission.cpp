@@ -115,7 +115,8 @@ void Walker::walk() {
   std::size_t jumps = 0;  // since the last command of another kind
   bool ends = false;
   if (const std::string other = parameters_.of_another(); !other.empty()) {
-    give_up(n, "the parameters are those of " + other + ", not of " + autopilot_.name());
+    give_up(n, "the parameters are those of " + other + ", not of " + autopilot_.name() +
+                   ": give those of the vehicle that flies it");
   }
   for (int steps = 0; n < commands_.size() && !ends; ++steps) {
     if (steps == kMaxSteps) {

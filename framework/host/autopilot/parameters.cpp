@@ -200,8 +200,10 @@ ParameterFile read_parameters(const std::string& file) {
         continue;
       }
     }
-    throw Error(file + ":" + std::to_string(number) +
-                ": expected a parameter's name and its value, found " + excerpt(line));
+    const bool is_pair = is_of_qgc || words.size() == 2;
+    throw Error(file + ":" + std::to_string(number) + ": " +
+                (is_pair ? words[name] + ": expected a number, found " + excerpt(words[name + 1])
+                         : "expected a parameter's name and its value, found " + excerpt(line)));
   }
   if (values.empty()) {
     throw Error(file + ": contains no parameters");
@@ -249,6 +251,12 @@ std::string Parameters::of_another() const {
   const std::size_t own = autopilot_.is_px4() ? 2 : autopilot_.is_copter() ? 0 : 1;
   const auto other = std::find(has.begin(), has.end(), true);
   return has[own] || other == has.end() ? "" : kNames[std::size_t(other - has.begin())];
+}
+
+bool decide_a_flight(const ParameterFile& file) {
+  return std::any_of(std::begin(kRows), std::end(kRows), [&](const Row& row) {
+    return file.contains(row.name) || file.contains(row.old_name);
+  });
 }
 
 std::vector<Parameters::Used> Parameters::used() const {

@@ -16,6 +16,8 @@ using ParameterFile = std::map<std::string, double>;
 /// Reads Mission Planner's `.param` ("NAME,VALUE") or QGroundControl's `.params` (five columns, the
 /// third and fourth name and value). Throws Error naming the file and the line.
 ParameterFile read_parameters(const std::string& file);
+/// False if an autopilot flies every mission with these as it does without.
+bool decide_a_flight(const ParameterFile& file);
 
 /// The parameters that decide how an autopilot flies a mission: those of a file, else its defaults.
 /// Remembers which were asked for.

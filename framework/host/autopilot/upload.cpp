@@ -321,7 +321,9 @@ bool UploadCheck::check_feasibility() {
       is_valid = refuse(n, "takes off at the first position of a mission alone");
     }
     if (is_take_off && height_of(n) <= flight_.home_ground) {
-      is_valid = refuse(n, "takes off to a height above home alone");
+      is_valid =
+          refuse(n, "takes off to a height above home alone, and this is " +
+                        with_decimals(flight_.home_ground - height_of(n), 1) + " m below it");
     }
     if (is_landing && !before) {
       is_valid = refuse(n, "refuses a mission that begins with a landing");

@@ -60,7 +60,25 @@ bool can_move(const formats::MissionCommand& command, const Vec3& by) {
   return formats::flies_to_position(task) && command.has_position() &&
          (by.z() == 0 || !is_end);  // a landing is flown to at the height of the item before
 }
+
+/// What speaks against flights beside the paths that are flown.
+std::size_t objections(const std::vector<FlownMission>& flights) {
+  std::size_t count = 0;
+  for (const FlownMission& flown : flights) {
+    count += std::size_t(
+        std::count_if(flown.remarks.begin(), flown.remarks.end(),
+                      [](const Remark& remark) { return remark.weight != Remark::Weight::note; }));
+  }
+  return count;
+}
 }  // namespace
+
+Cures::Cures(const formats::MissionFile& plan, const World& world, Fly fly, const BandJudge& judge)
+    : plan_(plan),
+      world_(world),
+      fly_(std::move(fly)),
+      judge_(judge),
+      objections_(objections(fly_(plan_))) {}
 
 std::string in_words(const Cure& cure, const std::string& item) {
   constexpr std::array kNames{"north", "north-east", "east", "south-east",
@@ -103,7 +121,11 @@ bool Cures::is_valid(const std::vector<Cure>& changes, std::size_t before, std::
             }));
   };
   try {
-    for (const FlownMission& flown : fly_(plan)) {
+    const std::vector<FlownMission> flights = fly_(plan);
+    if (objections(flights) > objections_) {
+      return false;  // an autopilot refuses it, or it is no longer judged
+    }
+    for (const FlownMission& flown : flights) {
       work_ += (double(flown.parts.size()) + double(flown.strips) / 2) / 2;  // to fly it
       for (const FlownPart& part : flown.parts) {
         if (is_concerned(part)) {

@@ -27,8 +27,7 @@ using Fly = std::function<std::vector<FlownMission>(const formats::MissionFile&)
 /// and the parts that it concerns are judged.
 class Cures {
  public:
-  Cures(const formats::MissionFile& plan, const World& world, Fly fly, const BandJudge& judge)
-      : plan_(plan), world_(world), fly_(std::move(fly)), judge_(judge) {}
+  Cures(const formats::MissionFile& plan, const World& world, Fly fly, const BandJudge& judge);
 
   /// The least change of one command's height or, where none helps, the least shift toward one of
   /// 16 directions, of at most 1,000 m, with which the way from `before` to `command`, and what
@@ -58,6 +57,7 @@ class Cures {
   const World& world_;
   Fly fly_;
   const BandJudge& judge_;
+  std::size_t objections_;  ///< remarks on the mission as it is
   double work_ = 0;
   double max_work_ = kMaxWorkOfOne;
 };

@@ -9,6 +9,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/kit/layers/hours.hpp"
+#include "host/base/words.hpp"
 #include "host/gate/places.hpp"
 #include "host/gate/violated_zone.hpp"
 #include "host/judge/judge.hpp"
@@ -423,6 +424,30 @@ Finding moving_not_judged() {
   finding.is_unjudged = true;
   return finding;
 }
+
+/// Where lengths in the world's frame are off about the mission by more than that of a frame which
+/// a model defines about it (plugins/environment/terrain/place.cpp): it is another region's.
+void expect_to_scale(PlanReport& report, const Frame& frame) {
+  constexpr double kMaxError = 0.005;
+  constexpr double kMargin = 1000;  // metres that a mission may leave its positions
+  Box area = Box::empty();
+  for (const Vec3& point : report.imported.route) {
+    area = area.with(point);
+  }
+  const double error = frame.has_position() ? frame.scale_error(area.grown(kMargin)) : 0;
+  if (error > kMaxError) {
+    Finding finding;
+    finding.violation.constraint = "frame";
+    finding.violation.value = error;
+    finding.violation.limit = kMaxError;
+    finding.violation.message =
+        "lengths are off by up to " + with_decimals(100 * error, 1) +
+        " % where the mission flies: the world's frame is one about another region";
+    finding.items = {"the mission"};
+    finding.is_unjudged = true;
+    report.findings.push_back(std::move(finding));
+  }
+}
 }  // namespace
 
 TimeSpan time_of(const std::vector<FlownMission>& flights) {
@@ -463,6 +488,7 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }
+  expect_to_scale(report, world.truth.frame());
   if (avoids_moving(request)) {
     report.findings.push_back(moving_not_judged());
     request.world = std::make_shared<const World>(world.truth.with_moving({}));

@@ -9,6 +9,7 @@
 #include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/iso_time.hpp"
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
@@ -333,6 +334,25 @@ void expect_within(const Config& config, const Mission& mission) {
   }
 }
 
+/// Throws ConfigError for a place so far from the frame's origin that zones there are left out.
+void expect_in_frame(const Frame& frame, const Vec3& there, const Location& where,
+                     const std::string& key) {
+  if (!frame.has_position()) {
+    return;
+  }
+  const LonLat lonlat = frame.to_lonlat(there.x(), there.y());
+  if (!formats::are_in_frame({lonlat}, frame)) {
+    char line[96];
+    std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}", lonlat[0],
+                  lonlat[1]);
+    throw ConfigError(where, key,
+                      "lies more than 20 degrees from the origin of the world's frame, which its "
+                      "first layer with a position gives: zones there are not known in it; put a "
+                      "layer about the flight first, or give " +
+                          std::string(line));
+  }
+}
+
 /// Resolves start, goal and via points, in the frame that is now known.
 void place_points(const Config& config, Mission& mission) {
   const ScenarioFile& file = config.scenario;
@@ -340,7 +360,11 @@ void place_points(const Config& config, Mission& mission) {
   Site& site = mission.site;
   Request& request = mission.request;
   const auto placed = [&](const Point& point, const Location& where, const std::string& key) {
-    return resolve_point(point, site, file.level_flight_at_m, where, key);
+    const Vec3 there = resolve_point(point, site, file.level_flight_at_m, where, key);
+    if (!config.is_only_judged) {  // of a mission elsewhere that is said
+      expect_in_frame(site.frame, there, where, key);
+    }
+    return there;
   };
   if (is_given(config, "start")) {
     request.start.position = placed(file.start.point, place_of(tree, "start"), "start");

@@ -157,10 +157,11 @@ class KmlReader {
       mission_.route_problem =
           "expected one LineString as the route, found " + std::to_string(lines_);
     } else if (const Points& route = lines_ > 0 ? line_ : points_;
-               route.without_height && mission_.route_problem.empty()) {
+               !route.without_height.empty() && mission_.route_problem.empty()) {
       mission_.route_problem =
-          "a route needs heights: altitudeMode absolute or relativeToGround, and three numbers per "
-          "point";
+          "a route needs heights, three numbers per point and the altitudeMode absolute or "
+          "relativeToGround: found " +
+          route.without_height;
     }
     mission_.items = lines_ > 0 ? std::move(line_.items) : std::move(points_.items);
     if (lines_ > 0 && !points_.items.empty()) {
@@ -179,7 +180,7 @@ class KmlReader {
  private:
   struct Points {
     std::vector<MissionItem> items;
-    bool without_height = false;
+    std::string without_height;  ///< why, "" if all have one
   };
 
   /// Other words of WPML cut corners or fly on: what is flown is then not what the points say.
@@ -203,7 +204,12 @@ class KmlReader {
           wayline->altitude_m == points.items.back().at.altitude_m) {
         continue;  // where the next wayline begins
       }
-      points.without_height |= !wayline && (mode == "clampToGround" || !c.has_altitude);
+      if (!wayline && points.without_height.empty()) {
+        const std::string number = std::to_string(points.items.size() + 1);
+        points.without_height = !c.has_altitude           ? "two numbers in point " + number
+                                : mode == "clampToGround" ? "clampToGround, or no altitudeMode"
+                                                          : "";
+      }
       points.items.push_back(
           {MissionItem::Kind::waypoint,
            wayline.value_or(MissionPoint{c.lonlat[0], c.lonlat[1], c.altitude_m, frame}), 0,

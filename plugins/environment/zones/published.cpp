@@ -255,8 +255,8 @@ Published published_zones(const formats::Airspace& airspace, const PublishedRule
   published.notes.insert(published.notes.end(), airspace.notes.begin(), airspace.notes.end());
   if (timed > 0) {
     published.notes.push_back(std::to_string(timed) +
-                              " zones with times closed at all times: expected the scenario's "
-                              "start_time");
+                              " zones with times closed at all times: when the flight starts is "
+                              "not given");
   }
   published.two_readings = converter.two_readings;
   published.zones = std::move(converter.zones);
