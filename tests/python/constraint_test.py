@@ -108,7 +108,7 @@ steps:
         text = pipeline.read_text().replace("]}}", "]}, else: [{plan: theta_star}]}")
         pipeline.write_text(text)
         held, _ = self.result(pipeline, code=1)
-        said = [step["message"].count("; the constraint 'tested' refuses the start itself")
+        said = [step["message"].count("the constraint 'tested' refuses the start itself; ")
                 for step in held["steps"]]
         self.assertEqual((held["status"], said), ("no_route", [1, 0]))
 

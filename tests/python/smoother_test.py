@@ -54,6 +54,7 @@ class Smoothers(ScriptCase):
     def test_faults(self):
         for body, says in (("raise ValueError('the attic')", "ValueError: the attic (tested.py:6)"),
                            ("return route[1:]", "first and last points must stay"),
+                           ("return route, {'saved': 3.7}", "the counter 'saved': expected a whole number, found 3.7"),
                            ("return route[:1] + [(float('nan'),) * 3] + route[1:]", "all finite"),
                            ("while True: pass", "did not stop within half a second"),
                            ("import ctypes; ctypes.string_at(0)", "crashed (SIGSEGV)")):

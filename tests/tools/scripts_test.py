@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """scripts_test.py SOURCES: every script of tools/ refuses wrong arguments, and those that count are right on small
 inputs. `scripts_test.py SOURCES Sizes.test_limits` runs one case."""
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -8,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 SOURCES = pathlib.Path(sys.argv[1]).resolve()
@@ -261,11 +263,22 @@ class Unbuilt(unittest.TestCase):
         return {"PATH": f"{self.tree}:{os.environ['PATH']}"}
 
     def test_builds_and_calls_the_program(self):
-        built = f"printf '#!/bin/sh\\necho \"$#: $*\"\\nexit 3\\n' > {self.program}; chmod +x {self.program}"
+        # A linker removes the link before it writes.
+        built = f"sleep 1; rm {self.program}; printf '#!/bin/sh\\necho \"$#: $*\"\\nexit 3\\n' > {self.program}; chmod +x {self.program}"
         path = self.cmake(f'[ "$*" = "--build {self.tree} --target altiplan_cli" ] || exit 1\n{built}\n')
         self.assertEqual(call(self.program, "a b", "c", **path),
-                         (3, "2: a b c\naltiplan: building the program (needed for the first time)\n"))
+                         (3, "2: a b c\naltiplan: building the program (needed for the first time; minutes)\n"))
         self.assertEqual(call(self.program, "d", **path), (3, "1: d\n"))
+
+    def test_who_calls_meanwhile_waits(self):
+        built = f"sleep 1; rm {self.program}; printf '#!/bin/sh\\necho $*\\n' > {self.program}; chmod +x {self.program}"
+        path = self.cmake(built + "\n")
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            first = pool.submit(call, self.program, "a", **path)
+            time.sleep(0.4)
+            second = pool.submit(call, self.program, "b", **path)
+            building = "altiplan: building the program (needed for the first time; minutes)\n"
+            self.assertEqual([first.result(), second.result()], [(0, "a\n" + building), (0, "b\n" + building)])
 
     def test_a_build_that_fails_is_tried_again(self):
         path = self.cmake("echo no compiler; exit 1\n")

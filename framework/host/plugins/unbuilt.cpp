@@ -96,10 +96,21 @@ std::vector<fs::path> Unbuilt::build(const std::vector<Plugin>& plugins) {
   if (!cmake) {
     throw Error(words + " is not built yet, and there is no cmake on the PATH to build it");
   }
-  std::cerr << "altiplan: building " << words << " (needed for the first time)\n";
+  const std::string count = std::to_string(libraries.size());
+  std::cerr << "altiplan: building " << (libraries.size() > 4 ? count + " plugins" : words)
+            << " (needed for the first time)\n";
   const BuildLock lock(folder_ / "buildable.lock");
-  const std::optional<int> code =
-      Program(command).ended(Program::Clock::now() + std::chrono::hours(2));
+  const Program build(command);
+  const auto end = Program::Clock::now() + std::chrono::hours(2);
+  std::optional<int> code;
+  while (!code && Program::Clock::now() < end) {
+    code = build.ended(Program::Clock::now() + std::chrono::seconds(20));
+    if (!code) {
+      const auto done = std::count_if(libraries.begin(), libraries.end(),
+                                      [](const fs::path& file) { return fs::exists(file); });
+      std::cerr << "altiplan: built " << done << " of " << count << '\n';
+    }
+  }
   if (code != 0) {
     throw Error("building " + words + " failed; cmake --build " + tree.string() + " shows why");
   }

@@ -39,7 +39,12 @@ bool Run::one_attempt(const StepEntry& entry, std::optional<std::string> instead
     step.budget_hit = true;
   }
   if (step.status == RunStatus::timed_out && step.reason == Reason::deadline) {
-    step.message = "time budget exhausted: " + time_budget(entry) + " (" + step.message + ")";
+    // The plugin was told to stop: nobody else cancelled it.
+    constexpr std::string_view kCancelled = "cancelled: ";
+    const std::string how = step.message.starts_with(kCancelled)
+                                ? step.message.substr(kCancelled.size())
+                                : step.message;
+    step.message = "time budget exhausted: " + time_budget(entry) + " (" + how + ")";
   }
   const std::lock_guard lock(mutex_);
   result_.steps.back() = step;
@@ -128,14 +133,16 @@ PlanResult Run::explained(PlanResult result, const Request& request) {
   if (!failed || std::exchange(ends_explained_, true)) {
     return result;
   }
+  std::string refused;  // before what the search counted, which it explains
   for (const auto& [end, p] :
        {std::pair("start", request.start.position), std::pair("goal", request.goal.position)}) {
     for (const NamedConstraint& named : request.constraints) {
       if (!named.admits_all && !named.admits({std::nullopt, p, p, request.world.get()})) {
-        result.message += "; the constraint '" + named.name + "' refuses the " + end + " itself";
+        refused += "the constraint '" + named.name + "' refuses the " + end + " itself; ";
       }
     }
   }
+  result.message = refused + result.message;
   return result;
 }
 

@@ -167,6 +167,9 @@ def planned(call: typing.Callable[..., typing.Any], arguments: typing.List[typin
     counters = {}
     if isinstance(returned, tuple) and len(returned) == 2 and isinstance(returned[1], dict):
         returned, counters = returned
+    for name, value in counters.items():
+        if not hasattr(value, "__index__"):
+            raise TypeError(f"the counter '{name}': expected a whole number, found {value!r}")
     counters = {"expanded": request.budget.expanded,
                 **{str(name): int(value) for name, value in counters.items()}}
     answer: _Json = {"counters": counters, "spent": request.budget.was_spent}

@@ -139,7 +139,8 @@ std::optional<Verdict> TestProcess::look(const RunnerOptions& options) {
   peak_mb_ = std::max(peak_mb_, memory_mb);
   std::string over;
   if (time_s > options.time_limit_s) {
-    over = "did not end within " + fixed(options.time_limit_s, 0) + " s";
+    over = "did not end within " + fixed(options.time_limit_s, 0) +
+           " s: does each of its loops come to an end, or ask the budget?";
   } else if (memory_mb > options.memory_limit_mb) {
     over = "used more than " + fixed(options.memory_limit_mb, 0) + " MB";
   }
