@@ -142,6 +142,15 @@ steps:
                 done = self.altiplan("run", pipeline, code=4)
                 self.assertIn(says, done.stdout + done.stderr)
 
+    def test_a_place_by_longitude_and_latitude(self):
+        pipeline = self.constraint("def admits(self, leg):\n"
+                                   "    (x, y), = leg.world.to_local([(8, 47.001)])\n"
+                                   "    assert abs(x) < 1 and 111 < y < 112, (x, y)\n    return True")
+        frame = "scenario.frame={crs: local, origin_lonlat: [8, 47]}"
+        self.assertEqual(self.result(pipeline, "--set", frame)[0]["status"], "solved")
+        result, _ = self.result(pipeline, code=4)
+        self.assertIn("the world has no geographic position", result["message"])
+
     def test_wrong_violations(self):
         for returned, says in (("None", "violations: expected a list"), ("[3]", "expected (at, value, limit, message), found 3"),
                                ("[(99, 1, 2, 'x')]", "expected the index of one of"),

@@ -139,8 +139,10 @@ ScriptMessage script_answer(const ScriptMessage& question, const ScriptAsked& as
   if (what == "violations" && asked.request != nullptr) {
     return {{{"violations", violations(Points(question.numbers, 1), *asked.request)}}, {}};
   }
-  if (what == "local" && asked.frame != nullptr) {
-    return {Json::object(), local(question.numbers, *asked.frame)};
+  const Frame* frame =
+      asked.frame == nullptr && asked.world != nullptr ? &asked.world->frame() : asked.frame;
+  if (what == "local" && frame != nullptr) {
+    return {Json::object(), local(question.numbers, *frame)};
   }
   throw PluginError("asks for " + excerpt(what) + ", which cannot be answered here");
 }

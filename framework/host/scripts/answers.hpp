@@ -10,7 +10,7 @@ namespace altiplan::host {
 struct ScriptAsked {
   const World* world = nullptr;      ///< null: of none is anything known
   const Request* request = nullptr;  ///< in which it plans, or null
-  const Frame* frame = nullptr;      ///< in which it builds a layer, or null
+  const Frame* frame = nullptr;      ///< in which it builds a layer, or null: the world's
 };
 
 /// The answer to a question. Throws PluginError for what is no question, and what layers and

@@ -85,6 +85,10 @@ class World:
         """Heights of the ground (m) at points (n, 2); nan where there is none."""
         return listed(self._ask({"ask": "ground"}, numbers_of(points_xy, 2, "points_xy"))[1])
 
+    def to_local(self, lonlat: typing.Any) -> typing.Any:
+        """Degrees east and north (n, 2) as metres east and north (n, 2) of the scenario's frame."""
+        return listed(self._ask({"ask": "local"}, numbers_of(lonlat, 2, "lonlat"))[1], 2)
+
     def legs_blocked(self, a: typing.Any, b: typing.Any, radius_m: float = 0.0) -> typing.Any:
         """Whether a sphere meets an obstacle on each straight leg from a[i] to b[i]."""
         return self._yes({"ask": "legs_blocked", "radius_m": float(radius_m)}, self._pairs(a, b))
@@ -131,8 +135,8 @@ def _point(given: typing.Any) -> typing.Any:
 
 
 class Leg:
-    """A straight motion that a constraint admits or refuses. `world` answers clearance, ground and
-    legs_blocked of the known layers; it is empty where none are known."""
+    """A straight motion that a constraint admits or refuses. `world` answers clearance, ground,
+    legs_blocked and to_local of the known layers; it is empty where none are known."""
 
     def __init__(self, numbers: "array[float]", ask: _Ask):
         self.start, self.end = _point(numbers[:3]), _point(numbers[3:6])  # metres
@@ -156,8 +160,8 @@ class Site:
         self._ask = ask
 
     def to_local(self, lonlat: typing.Any) -> typing.Any:
-        """Degrees east and north (n, 2) as metres east and north (n, 2) of the scenario's frame."""
-        return listed(self._ask({"ask": "local"}, numbers_of(lonlat, 2, "lonlat"))[1], 2)
+        """As of the world."""
+        return self.world.to_local(lonlat)
 
 
 class Request:
