@@ -335,21 +335,33 @@ void expect_within(const Config& config, const Mission& mission) {
 }
 
 /// Throws ConfigError for a place so far from the frame's origin that zones there are left out.
-void expect_in_frame(const Frame& frame, const Vec3& there, const Location& where,
-                     const std::string& key) {
+void expect_in_frame(const Config& config, const Mission& mission) {
+  const Frame& frame = mission.site.frame;
+  const auto expect = [&](const Vec3& there, const Location& where, const std::string& key) {
+    const LonLat lonlat = frame.to_lonlat(there.x(), there.y());
+    if (!formats::are_in_frame({lonlat}, frame)) {
+      char line[96];
+      std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}",
+                    lonlat[0], lonlat[1]);
+      throw ConfigError(where, key,
+                        "lies more than 20 degrees from the origin of the world's frame, which its "
+                        "first layer with a position gives: zones there are not known in it; put "
+                        "a layer about the flight first, or give " +
+                            std::string(line));
+    }
+  };
+  const Value& tree = config.scenario_tree;
   if (!frame.has_position()) {
     return;
   }
-  const LonLat lonlat = frame.to_lonlat(there.x(), there.y());
-  if (!formats::are_in_frame({lonlat}, frame)) {
-    char line[96];
-    std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}", lonlat[0],
-                  lonlat[1]);
-    throw ConfigError(where, key,
-                      "lies more than 20 degrees from the origin of the world's frame, which its "
-                      "first layer with a position gives: zones there are not known in it; put a "
-                      "layer about the flight first, or give " +
-                          std::string(line));
+  if (mission.ends.start) {
+    expect(*mission.ends.start, place_of(tree, "start"), "start");
+  }
+  if (mission.ends.goal) {
+    expect(*mission.ends.goal, place_of(tree, "goal"), "goal");
+  }
+  for (std::size_t i = 0; i < mission.via.size(); ++i) {
+    expect(mission.via[i].position, tree.find("via")->items[i].where, item("via", i));
   }
 }
 
@@ -360,11 +372,7 @@ void place_points(const Config& config, Mission& mission) {
   Site& site = mission.site;
   Request& request = mission.request;
   const auto placed = [&](const Point& point, const Location& where, const std::string& key) {
-    const Vec3 there = resolve_point(point, site, file.level_flight_at_m, where, key);
-    if (!config.is_only_judged) {  // of a mission elsewhere that is said
-      expect_in_frame(site.frame, there, where, key);
-    }
-    return there;
+    return resolve_point(point, site, file.level_flight_at_m, where, key);
   };
   if (is_given(config, "start")) {
     request.start.position = placed(file.start.point, place_of(tree, "start"), "start");
@@ -465,6 +473,7 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   site.volume = volume_of(config, mission, maybe_points(config, site), on_note);
   if (!config.is_only_judged) {
     expect_within(config, mission);
+    expect_in_frame(config, mission);
   }
   const double off = note_scale(mission, on_note);
   // What is clear must be so whichever way the frame is wrong.
