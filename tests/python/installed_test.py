@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """installed_test.py PROGRAM PLUGINS SOURCES: the package works where the build has been installed to."""
+import json
 import os
+import pathlib
+import shutil
 import subprocess
 import sys
 
 import case
 from case import PROGRAM, PythonCase
+
+import altiplan
 
 
 class Installed(PythonCase):
@@ -28,10 +33,30 @@ class Installed(PythonCase):
             "print(*[line.split()[-1] for line in open('/proc/self/maps') if 'altiplan' in line])\n",
             self.pipeline, env=path)
         self.assertIn("solved", text)
-        self.assertTrue((tree / "share/altiplan/notebooks/study.ipynb").is_file())
+        for file in sorted((tree / "share/altiplan/notebooks").iterdir()):
+            self.assertTrue(self.cell_that_finds_the_configurations(file).is_dir(), file)
         self.assertRegex(text, rf"searched: {tree}/lib[^ ]*/altiplan/plugins")
         self.assertNotIn(build + "/", text)
         self.new_planner(tree / "bin/altiplan", {**path, "ALTIPLAN_PYTHON": sys.executable})
+
+    def test_without_its_library(self):
+        package = os.path.dirname(os.path.abspath(altiplan.__file__))
+        shutil.copytree(package, self.folder / "altiplan", ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+        done = subprocess.run([sys.executable, "-c", "import altiplan"], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.assertIn("altiplan's library for this Python is not built", done.stderr)
+
+    def cell_that_finds_the_configurations(self, file):
+        """The folder that a notebook takes where it lies."""
+        lines = [line for cell in json.loads(file.read_text())["cells"] if cell["cell_type"] == "code"
+                 for line in "".join(cell["source"]).splitlines()]
+        first = next(n for n, line in enumerate(lines) if line.startswith("configs = "))
+        names = {"pathlib": pathlib}
+        before = os.getcwd()
+        os.chdir(file.parent)
+        self.addCleanup(os.chdir, before)
+        exec("\n".join(lines[first:first + 3]), names)
+        return names["configs"].resolve()
 
     def new_planner(self, program, environment):
         """A planner in Python is written and found by an installed program, without PYTHONPATH."""

@@ -17,7 +17,14 @@ from typing import Optional as _Optional
 from typing import Sequence as _Sequence
 from typing import Union as _Union
 
-from . import _altiplan, _plot, _values
+try:
+    from . import _altiplan
+except ImportError as error:
+    if "_altiplan" not in str(error.path):  # else it is there, and a library that it needs is not
+        raise ImportError("altiplan's library for this Python is not built: in the build's folder, cmake --build . "
+                          "--target altiplan_python, which needs pybind11 and the python3 that CMake found") from error
+    raise
+from . import _plot, _values
 from ._altiplan import (Check, Flight, Leg, Metrics, Result, Route, Step, Violation, World,
                         __version__)
 from ._error import Error
