@@ -212,7 +212,7 @@ class Go(unittest.TestCase):
                 (["--avoid", "wall.geojson"], "reason: the zones close every way: without them a "
                                               "route of 22.4"),
                 (["--avoid", "wall.geojson"], "is found, which enters 'Wall'\n"),
-                (["--min-agl", "50", "--max-agl", "52"], "reason: --max-agl: without a limit above")):
+                (["--min-agl", "50", "--max-agl", "52"], "reason: --max-agl is too low: up to 78 m a route of ")):
             out, _ = self.call("go", "--terrain", TERRAIN, *ENDS, *options, code=1)
             self.assertIn(said, out)
         out, _ = self.call("go", "--terrain", TERRAIN, "--from", "-84.31,36.48", "--to",

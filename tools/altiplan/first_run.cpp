@@ -275,13 +275,19 @@ std::vector<std::string> reasons_of(const FailedTry& failed, Interrupt& interrup
     reasons.push_back("the zones close every way: without them a route of " + kilometres(route) +
                       " is found" + (names.empty() ? "" : ", which enters " + listed(names)));
   }
-  route = found_without(failed.wish.max_above_ground_m.has_value(), [](host::RouteWish& wish) {
-    wish.min_above_ground_m = host::heights_of(wish).min_m;
-    wish.max_above_ground_m.reset();
-  });
-  if (!route.empty()) {
-    reasons.push_back("--max-agl: without a limit above a route of " + kilometres(route) +
-                      " is found: raise it");
+  for (const double times : {1.5, 2.0, 3.0, 5.0, kInfinity}) {
+    const double limit = std::ceil(times * failed.wish.max_above_ground_m.value_or(0));
+    route = found_without(failed.wish.max_above_ground_m.has_value(), [&](host::RouteWish& wish) {
+      wish.min_above_ground_m = host::heights_of(wish).min_m;
+      wish.max_above_ground_m = std::isfinite(limit) ? std::optional(limit) : std::nullopt;
+    });
+    if (!route.empty()) {
+      reasons.push_back("--max-agl is too low: " +
+                        (std::isfinite(limit) ? "up to " + host::with_digits(limit, 4) + " m"
+                                              : std::string("without it")) +
+                        " a route of " + kilometres(route) + " is found");
+      break;
+    }
   }
   return reasons;
 }

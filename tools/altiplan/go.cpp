@@ -161,8 +161,13 @@ int go(GoArguments arguments) {
   print_remarks(result);
   if (!result.accepted) {
     unfinished->is_finished();
+    std::string why = result.message;
+    constexpr std::string_view kSaid = "no route: ";
+    if (const std::size_t at = why.find(": " + std::string(kSaid)); at != why.npos) {
+      why.erase(at + 2, kSaid.size());  // of the planner, which is named before
+    }
     std::printf("no route: %s; %s/ holds scenario.yaml, pipeline.yaml and result.json\n",
-                result.message.c_str(), folder.c_str());
+                why.c_str(), folder.c_str());
     for (const std::string& reason : reasons) {
       std::printf("reason: %s\n", reason.c_str());
     }
