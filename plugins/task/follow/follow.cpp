@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "altiplan/environment.hpp"
 #include "altiplan/error.hpp"
@@ -11,6 +10,7 @@
 #include "altiplan/request.hpp"
 #include "altiplan/task.hpp"
 #include "altiplan/world.hpp"
+#include "beside.hpp"
 
 namespace altiplan::follow {
 namespace {
@@ -45,39 +45,17 @@ struct Params {
   }
 };
 
-/// Left of a leg's direction, of length 1; horizontal.
-Vec3 left_of(const Vec3& from, const Vec3& to) {
-  const Vec3 way = (to - from).normalized();
-  return {-way.y(), way.x(), 0};
-}
-
-/// The line moved aside: legs stay parallel and meet where the moved legs do. Beyond a sharp corner
-/// they are joined across it, so that no point is farther than twice the offset.
-Polyline moved_aside(const Polyline& line, double offset) {
-  constexpr double kSharp = 0.5;  // cosine of half the turn
-  Polyline moved{line[0] + offset * left_of(line[0], line[1])};
-  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-    const Vec3 before = left_of(line[i - 1], line[i]);
-    const Vec3 after = left_of(line[i], line[i + 1]);
-    const double cosine = std::sqrt(std::max(0.0, (1 + before.dot(after)) / 2));
-    if (cosine > kSharp) {
-      moved.push_back(line[i] + offset * (before + after).normalized() / cosine);
-    } else {
-      moved.push_back(line[i] + offset * before);
-      moved.push_back(line[i] + offset * after);
-    }
-  }
-  const std::size_t n = line.size();
-  moved.push_back(line[n - 1] + offset * left_of(line[n - 2], line[n - 1]));
-  return moved;
-}
-
 class Follow final : public Task {
  public:
   Follow(const Params& params, const Site& site) : params_(params) {
     const Polyline line = corners(site);
     for (const double offset : params.offsets_m) {
-      Polyline pass = moved_aside(line, offset);
+      Polyline pass;
+      try {
+        pass = beside(line, offset);
+      } catch (const Error& error) {
+        throw ParameterError("offsets_m", error.what());
+      }
       passes_.push_back(params_.height_m ? at_height(pass, *params_.height_m)
                                          : over_ground(pass, *site.before));
     }
