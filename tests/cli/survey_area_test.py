@@ -236,6 +236,13 @@ class Survey(unittest.TestCase):
         out, _ = self.call("survey", area, "--terrain", TERRAIN, *CAMERA, "--flight-minutes", "0.5", code=1)
         self.assertIn("no flight", out)
 
+    def test_a_copter_in_wind(self):
+        area = self.write(kml(RIDGE, FIELD))
+        calm = self.survey(area, TERRAIN)
+        shutil.rmtree(self.folder / "out")
+        windy = self.survey(area, TERRAIN, "--wind", "6,270")
+        self.assertGreater(windy["planned_s"], 1.05 * calm["planned_s"])  # there and back again
+
     def test_along_a_line(self):
         corners = [(0, 0), (400, 100), (700, -150)]
         self.write(document(cable=line(RIDGE, *corners)), "line.kml")
@@ -352,6 +359,13 @@ class Survey(unittest.TestCase):
         self.refused("lines.kml: expected one LineString", lines, *terrain, *CAMERA)
         self.refused("--gsd-cm or --agl is required", area, *terrain, *CAMERA[:2], code=2)
         self.refused("missing.kml", "missing.kml", *terrain, *CAMERA)
+        wing = ["--wing", "60"]
+        self.refused("an aeroplane's plan ends in a circle", area, *terrain, *CAMERA, *wing, "--flight-minutes", "9", code=2)
+        cable = self.write(document(a=line(RIDGE, (0, 0), (300, 9))), "cable.kml")
+        self.refused("cable.kml has a line, which a copter follows", cable, *terrain, *CAMERA, *wing)
+        self.refused("0.8 s, which takes the camera 1 s", area, *terrain, *CAMERA, "--speed", "25")
+        self.refused("is not less than the speed", area, *terrain, *CAMERA, "--wind", "12,90")
+        self.refused("found '5'", area, *terrain, *CAMERA, "--wind", "5", code=2)
         cut = self.write(kml(RIDGE, FIELD, [(16.5, 100), (310, 110), (313, 130), (18.5, 120)]), "cut.kml")
         self.refused("cut the area into 2 parts", cut, *terrain, *CAMERA)
 

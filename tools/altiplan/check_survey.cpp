@@ -19,6 +19,37 @@ using host::Json;
 
 /// How far a copter may be off its lines, metres (WP_RADIUS_M, and a metre for stored numbers).
 constexpr double kOffLines = 3;
+/// An aeroplane, once it has lined up.
+constexpr double kWingOffLines = 10;
+
+double off_lines(const host::FirstRoute& first) {
+  return first.beyond_m() > 0 ? kWingOffLines : kOffLines;
+}
+
+/// Of the ends of an aeroplane's lines, what does not count.
+double unsure_m(const host::FirstRoute& first) {
+  constexpr double kEarly = 15;  // its plan has items so near to them
+  return first.beyond_m() > 0 ? kEarly : 0;
+}
+
+/// A line without so much at both ends; nothing where none is left.
+Polyline shortened(Polyline line, double metres) {
+  for (int end = 0; end < 2 && metres > 0; ++end) {
+    double left = metres;
+    while (line.size() > 1 && left > 0) {
+      const Vec3 way = line[line.size() - 2] - line.back();
+      const double length = way.head<2>().norm();
+      if (length > left) {
+        line.back() += left / length * way;
+        break;
+      }
+      left -= length;
+      line.pop_back();
+    }
+    std::reverse(line.begin(), line.end());
+  }
+  return line;
+}
 
 /// Makes a plan's surveys again and compares them with its items.
 int check_made_again(const std::string& file, bool as_json) {
@@ -59,6 +90,7 @@ int check_made_again(const std::string& file, bool as_json) {
 struct Written {
   std::vector<formats::Polygon> areas;  ///< in the frame
   host::PhotoLines photos;
+  double unsure_m = 0;  ///< of the ends of its lines, what does not count
 };
 
 formats::Ring ring_in(const Json& lonlat, const Frame& frame) {
@@ -103,7 +135,12 @@ Written written_in(const std::string& file, const Frame& frame) {
                       0,
                       positive("across_m") / positive("from_m") / 2,
                       positive("along_m") / positive("from_m") / 2,
-                      kOffLines};
+                      survey.value("off_m", kOffLines)};
+    written.unsure_m = survey.value("unsure_m", 0.0);
+    if (!(written.photos.off_m >= 0 && written.photos.off_m < 1e6 && written.unsure_m >= 0 &&
+          written.unsure_m < 1e6)) {
+      throw Error(place + "off_m, unsure_m: expected lengths");
+    }
   } catch (const Json::exception&) {
     throw Error(place +
                 "expected areas with outline and holes in longitude and latitude, and "
@@ -149,12 +186,20 @@ int check_shown(const std::string& file, const PlanCheck& options,
   const World& world = judged.world.truth;
   Written written = written_in(file, world.frame());
   find_lines(judged, written.photos);
+  const std::size_t stretches = written.photos.lines.size();
+  std::vector<Polyline> sure;
+  for (const Polyline& line : written.photos.lines) {
+    if (Polyline shorter = shortened(line, written.unsure_m); shorter.size() > 1) {
+      sure.push_back(std::move(shorter));
+    }
+  }
+  written.photos.lines = std::move(sure);
   const double shown = host::share_shown(written.areas, written.photos, world);
   if (options.json) {
-    std::cout << host::file_text({{"lines", written.photos.lines.size()}, {"coverage", shown}});
+    std::cout << host::file_text({{"lines", stretches}, {"coverage", shown}});
   } else {
     std::printf("%s: %zu stretches with the camera on, %s %% of the area shown for certain\n",
-                file.c_str(), written.photos.lines.size(), fixed(100 * shown, 2).c_str());
+                file.c_str(), stretches, fixed(100 * shown, 2).c_str());
   }
   return kDone;
 }
@@ -183,14 +228,23 @@ std::string with_survey(const std::string& plan, const host::FirstRoute& first,
   json["altiplan"]["survey"] = {{"areas", areas},
                                 {"across_m", lines.across_m},
                                 {"along_m", lines.along_m},
-                                {"from_m", lines.above_ground_m}};
+                                {"from_m", lines.above_ground_m},
+                                {"off_m", off_lines(first)},
+                                {"unsure_m", unsure_m(first)}};
   return json.dump(4, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-host::PhotoLines photo_lines(const host::SurveyLines& lines, std::vector<Polyline> along) {
+host::PhotoLines photo_lines(const host::FirstRoute& first, const std::vector<Polyline>& along) {
+  const host::SurveyLines& lines = first.lines();
   const double per_m = 0.5 / lines.above_ground_m;
-  return {std::move(along), lines.trigger_m, per_m * lines.across_m, per_m * lines.along_m,
-          kOffLines};
+  host::PhotoLines photos{
+      {}, lines.trigger_m, per_m * lines.across_m, per_m * lines.along_m, off_lines(first)};
+  for (const Polyline& line : along) {
+    if (Polyline shorter = shortened(line, unsure_m(first)); shorter.size() > 1) {
+      photos.lines.push_back(std::move(shorter));
+    }
+  }
+  return photos;
 }
 
 int check_survey(const std::string& file, const PlanCheck& options,

@@ -88,6 +88,40 @@ std::vector<std::string> ends_in_zones(const host::Mission& mission) {
   add("the goal", mission.request.goal.position);
   return sentences;
 }
+
+/// The error message for M/S,DEGREES; "" if it is valid.
+std::string wind_problem(const std::string& text) {
+  const auto wind = numbers(text);
+  return wind && wind->size() == 2 && wind->front() >= 0 && wind->front() <= 100 &&
+                 wind->back() >= 0 && wind->back() <= 360
+             ? ""
+             : "expected M/S,DEGREES (0 to 100; where it comes from, 0 to 360, clockwise from "
+               "north), without spaces, found '" +
+                   text + "'";
+}
+
+/// What flies, and in which wind.
+void add_vehicle(App& command, FirstArguments& arguments) {
+  host::RouteWish& wish = arguments.wish;
+  auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
+  command
+      .add_option("--wing RADIUS", wish.turn_radius_m,
+                  "plan for an aeroplane with this turn radius")
+      ->check(number_from(1, 5000))
+      ->excludes(copter);
+  const auto rate = [&](const char* name, std::optional<double>& value, const char* what) {
+    command.add_option(std::string(name) + " M/S", value, what)->check(number_from(0.1, 200));
+  };
+  rate("--speed", wish.speed_mps, "speed through the air (default: chosen)");
+  rate(
+      "--climb", wish.climb_mps,
+      "greatest rates of climb and sink (default: of an aeroplane 10 degrees, of a copter those of "
+      "ArduPilot's defaults)");
+  command.add_option("--params FILE", arguments.parameters,
+                     "the autopilot's parameters (.param, .params), in place of its defaults");
+  command.add_option("--wind M/S,DEGREES", arguments.wind, "wind, and where it comes from")
+      ->check(wind_problem);
+}
 }  // namespace
 
 std::optional<std::vector<double>> numbers(const std::string& text) {
@@ -121,6 +155,7 @@ void add_terrain(App& command, FirstArguments& arguments) {
 
 void add_first_options(App& command, FirstArguments& arguments, const std::string& folder) {
   host::RouteWish& wish = arguments.wish;
+  add_vehicle(command, arguments);
   command
       .add_option("--avoid FILE", arguments.avoid,
                   "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
@@ -150,6 +185,17 @@ void add_first_options(App& command, FirstArguments& arguments, const std::strin
                      "UTC (2026-05-01T10:00:00Z), for zones with hours; default: all count");
   command.add_option("--crs EPSG:CODE", wish.crs, "coordinate system of a model that names none");
   command.add_option("-o,--out DIR", arguments.out, "new folder (default: " + folder + ")");
+}
+
+void read_vehicle(FirstArguments& arguments) {
+  if (arguments.parameters) {
+    arguments.gate.flight.parameters = host::read_parameters(*arguments.parameters);
+  }
+  if (arguments.wind) {
+    const std::vector<double> wind = numbers(*arguments.wind).value();
+    arguments.wish.wind = {wind.front(), wind.back()};
+    arguments.gate.flight.wind_mps = wind.front();
+  }
 }
 
 host::RouteWish wish_of_first(const FirstArguments& arguments) {

@@ -18,15 +18,21 @@ struct FirstArguments {
   std::vector<std::string> terrain;
   std::vector<std::string> avoid;
   std::optional<std::string> out;
+  std::optional<std::string> wind;
+  std::optional<std::string> parameters;
+  bool copter = false;
   host::RouteWish wish;
+  host::GateOptions gate;  ///< in a wind an aeroplane is judged in that strength, from anywhere
   host::Overrides overrides;
 };
 
 /// Adds --terrain.
 void add_terrain(App& command, FirstArguments& arguments);
-/// Adds zones, limits of height, battery, planner, time and -o, which is by default
-/// `folder`.
+/// Adds the vehicle and the wind, zones, limits of height, battery, planner, time and -o, which is
+/// by default `folder`.
 void add_first_options(App& command, FirstArguments& arguments, const std::string& folder);
+/// Reads the autopilot's parameters and the wind into the wish and the gate.
+void read_vehicle(FirstArguments& arguments);
 /// The wish with models and zones, without points.
 host::RouteWish wish_of_first(const FirstArguments& arguments);
 /// Finite numbers separated by commas; none if the text is anything else.

@@ -22,10 +22,6 @@ struct GoArguments : FirstArguments {
   std::string from;
   std::string to;
   std::vector<std::string> via;
-  std::optional<std::string> wind;
-  std::optional<std::string> parameters;
-  bool copter = false;
-  host::GateOptions gate;  ///< in a wind an aeroplane is judged in that strength, from anywhere
 };
 
 host::RouteWish wish_of(const GoArguments& arguments) {
@@ -36,17 +32,6 @@ host::RouteWish wish_of(const GoArguments& arguments) {
   }
   wish.points.push_back(point_of("--to", arguments.to));
   return wish;
-}
-
-/// The error message for M/S,DEGREES; "" if it is valid.
-std::string wind_problem(const std::string& text) {
-  const auto wind = numbers(text);
-  return wind && wind->size() == 2 && wind->front() >= 0 && wind->front() <= 100 &&
-                 wind->back() >= 0 && wind->back() <= 360
-             ? ""
-             : "expected M/S,DEGREES (0 to 100; where it comes from, 0 to 360, clockwise from "
-               "north), without spaces, found '" +
-                   text + "'";
 }
 
 /// True where another corridor or smaller cells may help.
@@ -116,14 +101,7 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
 }
 
 int go(GoArguments arguments) {
-  if (arguments.parameters) {
-    arguments.gate.flight.parameters = host::read_parameters(*arguments.parameters);
-  }
-  if (arguments.wind) {
-    const std::vector<double> wind = numbers(*arguments.wind).value();
-    arguments.wish.wind = {wind.front(), wind.back()};
-    arguments.gate.flight.wind_mps = wind.front();
-  }
+  read_vehicle(arguments);
   std::optional<Activity> activity("reading the model");
   const host::RouteWish wish = wish_of(arguments);
   const host::FirstRoute first(wish, arguments.overrides.plugin_path);
@@ -204,35 +182,13 @@ void add_points(App& command, GoArguments& arguments) {
       ->check(point_problem);
 }
 
-void add_wishes(App& command, GoArguments& arguments) {
-  host::RouteWish& wish = arguments.wish;
-  auto* copter = command.add_flag("--copter", arguments.copter, "plan for a copter (default)");
-  command
-      .add_option("--wing RADIUS", wish.turn_radius_m,
-                  "plan for an aeroplane with this turn radius")
-      ->check(number_from(1, 5000))
-      ->excludes(copter);
-  const auto rate = [&](const char* name, std::optional<double>& value, const char* what) {
-    command.add_option(std::string(name) + " M/S", value, what)->check(number_from(0.1, 200));
-  };
-  rate("--speed", wish.speed_mps, "speed through the air (default: chosen)");
-  rate(
-      "--climb", wish.climb_mps,
-      "greatest rates of climb and sink (default: of an aeroplane 10 degrees, of a copter those of "
-      "ArduPilot's defaults)");
-  command.add_option("--params FILE", arguments.parameters,
-                     "the autopilot's parameters (.param, .params), in place of its defaults");
-  command.add_option("--wind M/S,DEGREES", arguments.wind, "wind, and where it comes from")
-      ->check(wind_problem);
-  add_first_options(command, arguments, "the model's name");
-}
 }  // namespace
 
 void add_go(App& app, Action& action) {
   auto [command, arguments] = add_command<GoArguments>(
       app, action, "go", "a first route between two points, without YAML", go);
   add_points(command, arguments);
-  add_wishes(command, arguments);
+  add_first_options(command, arguments, "the model's name");
   add_plugin_path(command, arguments.overrides);
   set_example(command,
               "altiplan go --terrain configs/data/jacksboro_fault.tif --from -84.38,36.48 "

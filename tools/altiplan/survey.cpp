@@ -67,18 +67,20 @@ std::size_t photos_of(const std::vector<Polyline>& lines, double trigger_m) {
   return photos;
 }
 
-/// Heights above ground on the ways between items, as they may be flown.
+/// Heights above ground, as they may be flown.
 host::LegHeights heights_of(const std::vector<Flight>& flights) {
   host::LegHeights all;
   for (const Flight& flight : flights) {
-    for (const host::ReportedPart& part : flight.report.parts) {
-      if (part.what.empty() && part.items.size() > 1) {
-        all.lowest = std::min(all.lowest, part.heights.lowest);
-        all.highest = std::max(all.highest, part.heights.highest);
-      }
-    }
+    all.lowest = std::min(all.lowest, flight.heights.lowest);
+    all.highest = std::max(all.highest, flight.heights.highest);
   }
   return all;
+}
+
+/// Of the route as it is drawn, in the wind that was given.
+double planned_s(const Surveyed& surveyed) {
+  const host::RunResult& result = surveyed.result;
+  return result.steps[*result.accepted].measures->time_s.value_or(0);
 }
 
 void write_page(const fs::path& folder, const SurveyArguments& arguments) {
@@ -99,8 +101,12 @@ host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
     for (const host::Finding& finding : report.findings) {
       findings.push_back(finding.items.back() + ": " + finding.violation.message);
     }
+    if (!flight.off_scale.empty()) {
+      findings.push_back(flight.off_scale);
+    }
+    const bool passes = report.passed() && flight.off_scale.empty();
     flights.push_back({{"plan", (folder / flight.file).string()},
-                       {"verdict", word_of(report.verdict())},
+                       {"verdict", passes || !report.passed() ? word_of(report.verdict()) : "fail"},
                        {"findings", findings},
                        {"time_s", {report.time.min_s, report.time.max_s}},
                        {"max_wh", report.energy ? host::Json(report.energy->max_wh) : host::Json()},
@@ -113,23 +119,26 @@ host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
           {"spacing_m", first.lines().spacing_m},
           {"trigger_m", first.lines().trigger_m},
           {"coverage", first.areas().empty() ? host::Json() : host::Json(surveyed.shown)},
+          {"planned_s", planned_s(surveyed)},
           {"lines", lines.size()},
           {"images", photos_of(lines, first.lines().trigger_m)},
           {"gsd_cm", {100 * camera.gsd_m(heights.lowest), 100 * camera.gsd_m(heights.highest)}},
           {"flights", flights}};
 }
 
-void print(const Surveyed& surveyed, const host::FirstRoute& first, const host::Camera& camera) {
+void print(const Surveyed& surveyed, const host::FirstRoute& first, const host::Camera& camera,
+           bool has_wind) {
   const host::LegHeights heights = heights_of(surveyed.flights);
   const std::vector<Polyline> lines = surveyed.lines();
   const bool has_area = !first.areas().empty();
   std::printf(
-      "survey: %sthe camera on along %zu stretches, %zu photos, %s to %s cm a pixel below it%s\n",
+      "survey: %sthe camera on along %zu stretches, %zu photos, %s to %s cm a pixel below it%s%s\n",
       has_area ? (host::with_digits(first.area_m2() / 1e4, 4) + " ha, ").c_str() : "", lines.size(),
       photos_of(lines, first.lines().trigger_m),
       fixed(100 * camera.gsd_m(heights.lowest), 3).c_str(),
       fixed(100 * camera.gsd_m(heights.highest), 3).c_str(),
-      has_area ? (", " + fixed(100 * surveyed.shown, 2) + " % shown for certain").c_str() : "");
+      has_area ? (", " + fixed(100 * surveyed.shown, 2) + " % shown for certain").c_str() : "",
+      !has_wind ? "" : (", " + fixed(planned_s(surveyed) / 60, 1) + " min in that wind").c_str());
 }
 
 /// The verdicts on the flights.
@@ -139,6 +148,9 @@ void print_checks(const Surveyed& surveyed) {
       std::printf("%s: ", flight.file.c_str());
     }
     print_check(flight.report);
+    if (!flight.off_scale.empty()) {
+      std::printf("  fail: %s\n", flight.off_scale.c_str());
+    }
     if (flight.report.energy) {
       std::printf("  energy: %s\n", flight.report.energy->in_words().c_str());
     }
@@ -148,7 +160,8 @@ void print_checks(const Surveyed& surveyed) {
   }
 }
 
-int survey(const SurveyArguments& arguments) {
+int survey(SurveyArguments arguments) {
+  read_vehicle(arguments);
   std::optional<Activity> activity("reading the model");
   host::RouteWish wish = wish_of(arguments);
   std::optional<host::FirstRoute> first(std::in_place, wish, arguments.overrides.plugin_path);
@@ -186,7 +199,7 @@ int survey(const SurveyArguments& arguments) {
   if (arguments.json) {
     std::cout << host::file_text(json_of(surveyed, *first, camera, folder));
   } else {
-    print(surveyed, *first, camera);
+    print(surveyed, *first, camera, wish.wind.has_value());
     const std::size_t plans = surveyed.flights.size();
     std::printf("written: %s/: page.html, %s, result.json, scenario.yaml, pipeline.yaml\n",
                 folder.c_str(),
@@ -202,6 +215,10 @@ void add_survey(App& app, Action& action) {
   const auto prepare = [](SurveyArguments& given) {
     if (!given.gsd_cm && !given.agl_m) {
       throw UsageError{"--gsd-cm or --agl is required"};
+    }
+    if (given.wish.turn_radius_m && (given.flight_minutes || given.wish.battery_wh)) {
+      throw UsageError{
+          "--flight-minutes and --battery are for copters: an aeroplane's plan ends in a circle"};
     }
   };
   auto [command, arguments] = add_command<SurveyArguments>(

@@ -2,6 +2,7 @@
 #include "survey_flights.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "check_survey.hpp"
 #include "host/base/output_file.hpp"
@@ -18,9 +19,37 @@ namespace fs = std::filesystem;
 /// Shares of the tolerance of scale that are tried for the drawn route: the less of it, the more is
 /// left for how it is flown beside steep ground, and the more waypoints there are.
 constexpr double kDrawn[] = {0.6, 0.3, 0.1};
+/// Of an aeroplane the rest is for how it lags behind where it climbs: so many seconds of the
+/// climb, by ArduPilot's defaults. The gentler it climbs, the less can it follow the ground.
+struct WingTry {
+  double drawn;
+  bool is_gentle;
+};
+constexpr WingTry kWingTries[] = {{0.5, true},  {0.7, true},  {0.3, true},
+                                  {0.5, false}, {0.7, false}, {0.3, false}};
+constexpr double kWingLag = 5.4;
+
+/// The part of a pass that is photographed: without the leads of an aeroplane's row, its first and
+/// its last leg where they lie beyond the areas.
+Polyline photographed(Polyline pass, const host::FirstRoute& first) {
+  const auto leads = [&](const Vec3& end) {
+    return first.beyond_m() > 0 && pass.size() > 2 &&
+           std::none_of(first.areas().begin(), first.areas().end(),
+                        [&](const formats::Polygon& area) {
+                          return host::ring_holds(area.outline, end.head<2>());
+                        });
+  };
+  if (leads(pass.front())) {
+    pass.erase(pass.begin());
+  }
+  if (leads(pass.back())) {
+    pass.pop_back();
+  }
+  return pass;
+}
 
 /// Cuts the accepted route, along which the judge has found the passes, where they take off.
-std::vector<Flight> flights_of(const host::RunResult& result) {
+std::vector<Flight> flights_of(const host::RunResult& result, const host::FirstRoute& first) {
   const Route& route = result.steps[*result.accepted].route;
   std::vector<Flight> flights(1);
   std::size_t at = 0;
@@ -38,7 +67,7 @@ std::vector<Flight> flights_of(const host::RunResult& result) {
       begun = at;
     }
     if (points.size() > 1) {
-      flights.back().lines.push_back(points);
+      flights.back().lines.push_back(photographed(points, first));
     }
     at += points.size() - 1;
   }
@@ -53,10 +82,12 @@ bool write_plans(const fs::path& folder, const SurveyArguments& arguments,
   route.result = folder / "result.json";
   route.overrides = arguments.overrides;
   route.options.format = &host::format_named("qgc-plan");
-  route.options.takeoff = route.options.land = true;
+  const bool is_wing = arguments.wish.turn_radius_m.has_value();
+  route.options.takeoff = route.options.land = !is_wing;
+  route.options.circles_at_end = is_wing;
   finish_options(route);
   std::optional<LoadedRoute> source = loaded(route, std::nullopt);
-  std::vector<Flight> flights = flights_of(surveyed.result);
+  std::vector<Flight> flights = flights_of(surveyed.result, first);
   const host::SurveyLines& lines = first.lines();
   for (std::size_t i = 0; source && i < flights.size(); ++i) {
     Flight& flight = flights[i];
@@ -68,8 +99,13 @@ bool write_plans(const fs::path& folder, const SurveyArguments& arguments,
     if (!written) {
       return false;
     }
-    const host::CameraLines camera{flight.lines, lines.trigger_m,
-                                   source->mission.request.vehicle.speed_mps};
+    host::CameraLines camera{flight.lines, lines.trigger_m,
+                             source->mission.request.vehicle.speed_mps};
+    if (is_wing) {  // it flies at its own speed
+      constexpr double kTurnsWithin = 15;
+      camera.speed_mps = 0;
+      camera.within_m = kTurnsWithin;
+    }
     const std::string plan = host::plan_text(host::plan_of(written->mission, camera));
     host::write_file(
         folder / flight.file,
@@ -77,14 +113,49 @@ bool write_plans(const fs::path& folder, const SurveyArguments& arguments,
   }
   surveyed.flights = std::move(flights);
   surveyed.shown =
-      host::share_shown(first.areas(), photo_lines(lines, surveyed.lines()), source->mission.truth);
+      host::share_shown(first.areas(), photo_lines(first, surveyed.lines()), source->mission.truth);
   return true;
+}
+
+/// Heights above ground on the ways between items, of an aeroplane on those that it photographs.
+void find_heights(Flight& flight, const host::FirstRoute& first, bool is_wing) {
+  const host::PlanReport& report = flight.report;
+  std::set<std::string> photographed;
+  bool is_on = false;
+  for (std::size_t n = 0; n < report.commands.size(); ++n) {
+    const formats::MissionCommand& command = report.commands[n];
+    if (command.number == host::Command::kCameraTrigger) {
+      is_on = command.params[0] > 0;
+    } else if (is_on && command.has_position()) {
+      photographed.insert(report.name_of(n));
+    }
+  }
+  std::set<std::string> unknown = photographed;
+  for (const host::ReportedPart& part : report.parts) {
+    const bool is_way = part.what.empty() && part.items.size() > 1;
+    if (is_way && (!is_wing || photographed.count(part.items.back()) > 0)) {
+      flight.heights.lowest = std::min(flight.heights.lowest, part.heights.lowest);
+      flight.heights.highest = std::max(flight.heights.highest, part.heights.highest);
+      unknown.erase(part.items.back());
+    }
+  }
+  const host::SurveyLines& lines = first.lines();
+  const double low = lines.above_ground_m - lines.off_m;
+  const double high = lines.above_ground_m + lines.off_m;
+  if (is_wing && !unknown.empty()) {
+    flight.off_scale = *unknown.begin() + ": the scale of photos on the way to it is not judged";
+  } else if (is_wing && !(flight.heights.lowest >= low && flight.heights.highest <= high)) {
+    flight.off_scale = "photos are taken from " + fixed(flight.heights.lowest, 1) + " to " +
+                       fixed(flight.heights.highest, 1) + " m above ground, not within " +
+                       fixed(low, 1) + " to " + fixed(high, 1) + " m";
+  }
 }
 
 /// True where a route that is nearer to the height of the photos may pass.
 bool may_be_nearer(const Surveyed& surveyed) {
   bool is_off = false;
   for (const Flight& flight : surveyed.flights) {
+    is_off = is_off || !flight.off_scale.empty();
     for (const host::Finding& finding : flight.report.findings) {
       const std::string& broken = finding.violation.constraint;
       if (broken == "altitude" || broken == "ground_clearance") {
@@ -149,10 +220,11 @@ Surveyed fly(const SurveyArguments& arguments, const host::FirstRoute& first,
   if (!write_plans(folder, arguments, first, surveyed)) {
     return surveyed;
   }
-  host::GateOptions gate;
+  host::GateOptions gate = arguments.gate;
   gate.battery = battery_of(arguments);
   for (Flight& flight : surveyed.flights) {
     flight.report = judged(folder / flight.file, first, arguments.overrides, gate);
+    find_heights(flight, first, arguments.wish.turn_radius_m.has_value());
     const double minutes = flight.report.time.max_s / 60;
     if (minutes * 60 > longest_flight(arguments)) {
       surveyed.too_long = flight.file + ": takes up to " + fixed(minutes, 1) +
@@ -162,10 +234,46 @@ Surveyed fly(const SurveyArguments& arguments, const host::FirstRoute& first,
   }
   return surveyed;
 }
+
+/// One try.
+Surveyed tried(const SurveyArguments& arguments, const host::RouteWish& wish,
+               const fs::path& folder, std::optional<host::FirstRoute>& first,
+               Interrupt& interrupt) {
+  first.emplace(wish, arguments.overrides.plugin_path);
+  for (const auto& entry : fs::directory_iterator(folder)) {  // plans of the try before
+    if (entry.path().extension() == ".plan") {
+      fs::remove(entry.path());
+    }
+  }
+  return fly(arguments, *first, folder, interrupt);
+}
+
+/// With climbs as gentle as the lag asks for, then with any that the aeroplane can fly.
+Surveyed wing_survey_in(const fs::path& folder, const SurveyArguments& arguments,
+                        host::RouteWish wish, std::optional<host::FirstRoute>& first,
+                        Interrupt& interrupt) {
+  const double off_m = host::lines_of(*wish.survey).off_m;
+  Surveyed surveyed;
+  for (const auto& [drawn, is_gentle] : kWingTries) {
+    wish.survey->drawn = drawn;
+    wish.climb_mps = arguments.wish.climb_mps;
+    if (is_gentle) {
+      wish.climb_mps = std::min(wish.climb_mps.value_or(kInfinity), (1 - drawn) * off_m / kWingLag);
+    }
+    surveyed = tried(arguments, wish, folder, first, interrupt);
+    if (interrupt.happened() || (!surveyed.flights.empty() && surveyed.passed())) {
+      break;
+    }
+  }
+  return surveyed;
+}
 }  // namespace
 
 Surveyed survey_in(const fs::path& folder, const SurveyArguments& arguments, host::RouteWish wish,
                    std::optional<host::FirstRoute>& first, Interrupt& interrupt) {
+  if (wish.turn_radius_m) {
+    return wing_survey_in(folder, arguments, std::move(wish), first, interrupt);
+  }
   constexpr int kTries = 8;
   std::optional<double>& flight_s = wish.survey->flight_s;
   const std::optional<host::Battery> battery = battery_of(arguments);
@@ -179,13 +287,7 @@ Surveyed survey_in(const fs::path& folder, const SurveyArguments& arguments, hos
   std::size_t nearer = 0;
   for (int i = 1;; ++i) {
     wish.survey->drawn = kDrawn[nearer];
-    first.emplace(wish, arguments.overrides.plugin_path);
-    for (const auto& entry : fs::directory_iterator(folder)) {  // plans of the try before
-      if (entry.path().extension() == ".plan") {
-        fs::remove(entry.path());
-      }
-    }
-    Surveyed surveyed = fly(arguments, *first, folder, interrupt);
+    Surveyed surveyed = tried(arguments, wish, folder, first, interrupt);
     const double seconds = affordable(arguments, surveyed);
     const bool may_be_shorter = flight_s && seconds < kInfinity;
     if (interrupt.happened() || i == kTries) {

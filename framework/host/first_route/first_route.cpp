@@ -23,6 +23,13 @@ constexpr double kGravity = 9.80665;
 /// within it.
 constexpr double kFlownWithin = 3;
 
+/// Of an aeroplane's turn radius: clearance from islands, and how far rows go on beyond an area.
+constexpr double kIslandRadii = 1.2;
+constexpr double kBeyondRadii = 1.5;
+
+/// How far beside its line an aeroplane may fly, with its radius and some more.
+constexpr double kWingFlownWithin = 12;
+
 struct Try {
   int width;
   int fineness;
@@ -81,15 +88,22 @@ WishedHeights heights_of_photos(const RouteWish& wish, const SurveyLines& lines)
   heights.min_m = lines.above_ground_m - lines.off_m;
   heights.max_m = lines.above_ground_m + lines.off_m;
   heights.ends_m = lines.above_ground_m;
+  if (wish.turn_radius_m) {  // it turns between the lines, where it may be higher and lower
+    heights.min_m = std::min(WishedHeights().min_m, lines.above_ground_m / 2);
+    heights.min_m = wish.min_above_ground_m.value_or(heights.min_m);
+    heights.max_m = wish.max_above_ground_m;
+  }
   const std::string needed =
       " m above ground that photos of " + with_digits(100 * wish.survey->gsd_m, 4) + " cm take";
-  if (wish.min_above_ground_m.value_or(0) > heights.min_m) {
+  const double low = lines.above_ground_m - lines.off_m;
+  const double high = lines.above_ground_m + lines.off_m;
+  if (wish.min_above_ground_m.value_or(0) > low) {
     throw Error("--min-agl: " + in_metres(*wish.min_above_ground_m) + " is above the " +
-                with_digits(heights.min_m, 4) + needed + ": raise --gsd-cm");
+                with_digits(low, 4) + needed + ": raise --gsd-cm");
   }
-  if (wish.max_above_ground_m.value_or(kInfinity) < *heights.max_m) {
+  if (wish.max_above_ground_m.value_or(kInfinity) < high) {
     throw Error("--max-agl: " + in_metres(*wish.max_above_ground_m) + " is below the " +
-                with_digits(*heights.max_m, 4) + needed + ": lower --gsd-cm");
+                with_digits(high, 4) + needed + ": lower --gsd-cm");
   }
   return heights;
 }
@@ -117,10 +131,16 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
       throw Error(std::string("--avoid: ") + error.what());
     }
   }
-  expect_flyable();
   if (wish_.survey) {
     lines_ = lines_of(*wish_.survey);
     heights_ = heights_of_photos(wish_, *lines_);
+    if (wish_.turn_radius_m && !wish_.survey->line.empty()) {
+      throw Error("--wing: an aeroplane photographs areas; " + wish_.survey->file.string() +
+                  " has a line, which a copter follows");
+    }
+  }
+  expect_flyable();
+  if (wish_.survey) {
     for (const SurveyArea& area : wish_.survey->areas) {
       formats::Polygon& own = areas_.emplace_back();
       own.outline = in_frame(area.polygon.outline, corridor_.frame());
@@ -140,7 +160,7 @@ double FirstRoute::speed_mps() const {
   if (wish_.speed_mps) {
     return *wish_.speed_mps;
   }
-  if (lines_) {  // the camera keeps up, rounded down
+  if (lines_ && !wish_.turn_radius_m) {  // the camera keeps up, rounded down
     return std::min(kCopterSpeed, std::max(0.1, std::floor(lines_->max_mps * 10) / 10));
   }
   if (!wish_.turn_radius_m) {
@@ -160,7 +180,8 @@ double FirstRoute::bank_deg() const {
          1e6;
 }
 
-/// Throws Error for a speed that turns of the radius do not allow, or that the wind exceeds.
+/// Throws Error for a speed that turns of the radius do not allow, that the wind exceeds, or that
+/// is too fast for the camera.
 void FirstRoute::expect_flyable() const {
   if (wish_.turn_radius_m && bank_deg() > kMaxBank) {
     throw Error("--speed: turns of " + in_metres(*wish_.turn_radius_m) + " at " +
@@ -170,6 +191,16 @@ void FirstRoute::expect_flyable() const {
   if (wish_.wind && wish_.wind->speed_mps >= speed_mps()) {
     throw Error("--wind: " + text_of(wish_.wind->speed_mps) + " m/s is not less than the speed, " +
                 text_of(speed_mps()) + " m/s: nothing is reached against it");
+  }
+  // A copter's autopilot holds the speed over the ground that its plan commands.
+  const double fastest =
+      speed_mps() + (wish_.turn_radius_m && wish_.wind ? wish_.wind->speed_mps : 0);
+  if (lines_ && fastest > lines_->max_mps) {
+    throw Error("--speed: at up to " + with_digits(fastest, 3) +
+                " m/s over the ground photos would be due every " +
+                with_digits(lines_->trigger_m / fastest, 3) + " s, which takes the camera " +
+                with_digits(wish_.survey->camera.min_interval_s, 3) +
+                " s: lower --speed or --overlap");
   }
 }
 
@@ -246,7 +277,7 @@ std::string FirstRoute::point(const WishedPoint& at) const {
 }
 
 double FirstRoute::flown_margin() const {
-  if (lines_) {
+  if (lines_ && !wish_.turn_radius_m) {
     constexpr double kStored = 0.05;  // of what is drawn, numbers of files may be off
     return lines_->off_m - lines_->drawn_off_m(*wish_.survey) - kStored;
   }
@@ -327,13 +358,24 @@ std::string FirstRoute::cover_task() const {
       has_islands = true;
     }
   }
-  if (has_islands) {
+  if (wish_.turn_radius_m) {  // room to turn away in front of an island, and to line up with a row
+    text +=
+        std::string(has_islands ? "    clearance_m: " +
+                                      text_of(std::ceil(kIslandRadii * *wish_.turn_radius_m)) + "\n"
+                                : "") +
+        "    beyond_m: " + text_of(beyond_m()) + "\n" +
+        (wish_.survey->has_start ? "" : "    closed: false\n");
+  } else if (has_islands) {
     text += "    clearance_m: " + text_of(kCopterRadius + kFlownWithin + 0.01) + "\n";
   }
   if (wish_.survey->flight_s) {
     text += "    capacity_s: " + text_of(std::floor(*wish_.survey->flight_s * 10) / 10) + "\n";
   }
   return text;
+}
+
+double FirstRoute::beyond_m() const {
+  return wish_.turn_radius_m ? std::ceil(kBeyondRadii * *wish_.turn_radius_m) : 0;
 }
 
 std::string FirstRoute::follow_task() const {
@@ -377,8 +419,10 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
       "constraints:  # of the route narrower than asked for, by what a flight may be "
       "off\n" +
       heights(flown_margin(), ", applies_to: route") + heights(0, ", applies_to: track");
-  if (!wish_.turn_radius_m) {
-    text += "  - clearance: {min_m: " + text_of(kFlownWithin) + ", applies_to: route}\n";
+  if (!wish_.turn_radius_m || lines_) {
+    text +=
+        "  - clearance: {min_m: " + text_of(wish_.turn_radius_m ? kWingFlownWithin : kFlownWithin) +
+        ", applies_to: route}\n";
   }
   return text;
 }
@@ -459,8 +503,12 @@ std::string FirstRoute::over_voids(const Polyline& route) const {
 
 FirstFiles FirstRoute::files(int attempt, const fs::path& folder) const {
   const Box box = volume(attempt);
+  RouteWish wish = wish_;
+  if (lines_ && wish.turn_radius_m && !wish.planner) {
+    wish.planner = "hybrid_astar";  // quick from row to row
+  }
   Search search = choose_search(
-      wish_, heights_, {box, corridor_.length_m(), corridor_.spacing_m(), kTry[attempt].fineness},
+      wish, heights_, {box, corridor_.length_m(), corridor_.spacing_m(), kTry[attempt].fineness},
       *registry_);
   if (lines_) {  // passes stay as they are, and joins that need a planner are few
     search.steps.erase(std::min(search.steps.find("  - smooth"), search.steps.size()));

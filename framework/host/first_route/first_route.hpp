@@ -39,6 +39,8 @@ class FirstRoute {
   /// In the frame; of a line with a width what lies beside each of its legs.
   const std::vector<formats::Polygon>& areas() const { return areas_; }
   double area_m2() const;
+  /// By how much an aeroplane's rows go on beyond the areas.
+  double beyond_m() const;
   /// Where a route lies over voids of the models: a sentence, "" if nowhere.
   std::string over_voids(const Polyline& route) const;
 

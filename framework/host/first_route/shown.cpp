@@ -84,18 +84,6 @@ bool shows(const Stretch& stretch, const PhotoLines& photos, const Plane& place,
          along + beyond <= photos.half_along * height;
 }
 
-bool ring_holds(const formats::Ring& ring, const Plane& p) {
-  bool inside = false;
-  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-    const auto& [ax, ay] = ring[j];
-    const auto& [bx, by] = ring[i];
-    if ((ay > p.y()) != (by > p.y()) && p.x() < (bx - ax) * (p.y() - ay) / (by - ay) + ax) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
-
 /// Of the elevation models; infinite where there is none.
 double highest_ground(const World& world, const Plane& place, double half) {
   const Plane low = place.array() - half;
@@ -115,6 +103,18 @@ double highest_ground(const World& world, const Plane& place, double half) {
   return highest > -kInfinity ? highest : kInfinity;
 }
 }  // namespace
+
+bool ring_holds(const formats::Ring& ring, const Plane& p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const auto& [ax, ay] = ring[j];
+    const auto& [bx, by] = ring[i];
+    if ((ay > p.y()) != (by > p.y()) && p.x() < (bx - ax) * (p.y() - ay) / (by - ay) + ax) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
 
 double share_shown(const std::vector<formats::Polygon>& areas, const PhotoLines& photos,
                    const World& world) {

@@ -19,6 +19,8 @@ struct PhotoLines {
   double off_m = 0;  ///< by which the camera may be off the lines, in each direction
 };
 
+bool ring_holds(const formats::Ring& ring, const Eigen::Vector2d& p);
+
 /// Share of areas, but their holes, that at least one photo shows for certain: wherever between its
 /// bounds the camera is, and with all ground of a cell of a grid at the height of its highest.
 /// Hills that hide ground from the side are not looked for.

@@ -154,17 +154,20 @@ Plan plan_of(const MissionText& text) {
 }
 
 Plan plan_of(const MissionText& text, const CameraLines& camera) {
-  constexpr double kRounded = 0.1;  // metres
   Plan plan = plan_of(text);
   std::vector<PlanItem> items;
   std::size_t line = 0;
   bool is_on = false;
   for (std::size_t n = 0; n < plan.items.size(); ++n) {
     items.push_back(plan.items[n]);
-    if (n == 0) {
+    if (n == 0 && camera.speed_mps > 0) {
       items.push_back(speed_item(camera.speed_mps, text.decimals.metres));
     }
-    const auto is_at = [&](const Vec3& p) { return (text.local[n] - p).norm() < kRounded; };
+    const auto is_at = [&](const Vec3& p) {
+      const double away = (text.local[n] - p).norm();
+      return away < camera.within_m &&
+             (n + 1 == plan.items.size() || away <= (text.local[n + 1] - p).norm());
+    };
     const auto trigger = [&](double metres) {
       items.push_back(
           {Command::kCameraTrigger, kMissionFrame, {rounded(metres, text.decimals.metres), 0, 1}});

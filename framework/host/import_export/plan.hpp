@@ -63,10 +63,12 @@ Plan plan_of(const formats::MissionFile& mission);
 /// Photos along parts of a route.
 struct CameraLines {
   std::vector<Polyline> lines;
-  double trigger_m = 0;  ///< between photos
-  double speed_mps = 0;  ///< commanded before the first item after take-off
+  double trigger_m = 0;   ///< between photos
+  double speed_mps = 0;   ///< commanded before the first item after take-off; 0: none is
+  double within_m = 0.1;  ///< of a line's ends, the items there; turns are written beside theirs
 };
-/// The items, with the camera on at each line's first and off, with a last photo, at its last.
+/// The items, with the camera on at the one nearest to each line's first point and off, with a last
+/// photo, at that nearest to its last.
 /// Throws Error where a line is not among the items, in order.
 Plan plan_of(const MissionText& mission, const CameraLines& camera);
 

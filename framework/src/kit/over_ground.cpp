@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "altiplan/error.hpp"
 
@@ -62,7 +63,113 @@ class OverGround {
   double above_m_;
   double tolerance_m_;
 };
+
+/// Heights along a line that keep a tolerance and a slope at stations: in the middle between the
+/// least and the greatest that do.
+class Gentle {
+ public:
+  Gentle(const Polyline& line, const World& world, double above_m, double tolerance_m, double slope)
+      : world_(world), above_m_(above_m), tolerance_m_(tolerance_m), slope_(slope) {
+    const OverGround over(world, above_m, tolerance_m);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const Vec3 from = line[i == 0 ? 0 : i - 1];
+      const double length = (line[i] - from).head<2>().norm();
+      const int parts = i == 0 ? 1 : std::max(1, int(std::ceil(length / kStation)));
+      for (int k = 1; k <= parts; ++k) {
+        stations_.push_back(over.at(from + double(k) / parts * (line[i] - from)));
+      }
+      corners_.push_back(stations_.size() - 1);
+    }
+    level();
+  }
+
+  Polyline route() const {
+    Polyline route{stations_[0]};
+    for (std::size_t i = 1; i < corners_.size(); ++i) {
+      add(corners_[i - 1], corners_[i], route);
+    }
+    return route;
+  }
+
+ private:
+  /// Metres; the ground between two stations is as uneven as that part of the tolerance.
+  static constexpr double kStation = 5;
+  static constexpr double kOfTolerance = 0.9;
+
+  double rise(std::size_t i, std::size_t j) const {
+    return slope_ * (stations_[j] - stations_[i]).head<2>().norm();
+  }
+
+  void level() {
+    std::vector<double> low;
+    for (const Vec3& p : stations_) {
+      low.push_back(p.z() - kOfTolerance * tolerance_m_);
+    }
+    std::vector<double> high;
+    for (const Vec3& p : stations_) {
+      high.push_back(p.z() + kOfTolerance * tolerance_m_);
+    }
+    const auto narrow = [&](std::size_t i, std::size_t neighbour) {
+      low[i] = std::max(low[i], low[neighbour] - rise(i, neighbour));
+      high[i] = std::min(high[i], high[neighbour] + rise(i, neighbour));
+    };
+    for (std::size_t i = 1; i < stations_.size(); ++i) {
+      narrow(i, i - 1);
+    }
+    for (std::size_t i = stations_.size() - 1; i-- > 0;) {
+      narrow(i, i + 1);
+    }
+    for (std::size_t i = 0; i < stations_.size(); ++i) {
+      Vec3& p = stations_[i];
+      if (low[i] > high[i]) {
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      "the ground near (%.0f, %.0f) is too steep: with slopes of at most %.1f %% "
+                      "the height above it is %.1f m off, more than %g m",
+                      p.x(), p.y(), 100 * slope_,
+                      (low[i] - high[i]) / 2 + kOfTolerance * tolerance_m_,
+                      kOfTolerance * tolerance_m_);
+        throw Error(text);
+      }
+      p.z() = (low[i] + high[i]) / 2;
+    }
+  }
+
+  /// Adds the waypoints from one station to another, but its first.
+  void add(std::size_t from, std::size_t to, Polyline& route) const {
+    const Vec3& a = stations_[from];
+    const Vec3& b = stations_[to];
+    const bool keeps = world_.ground_gap(a, b) >= above_m_ - tolerance_m_ &&
+                       world_.ground_gap_max(a, b) <= above_m_ + tolerance_m_;
+    if (keeps || to <= from + 1) {
+      route.push_back(b);
+      return;
+    }
+    std::size_t worst = (from + to) / 2;
+    double off = 0;
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const double share = (stations_[i] - a).head<2>().norm() / (b - a).head<2>().norm();
+      const double there = std::abs(a.z() + share * (b.z() - a.z()) - stations_[i].z());
+      worst = there > off ? i : worst;
+      off = std::max(off, there);
+    }
+    add(from, worst, route);
+    add(worst, to, route);
+  }
+
+  const World& world_;
+  double above_m_;
+  double tolerance_m_;
+  double slope_;
+  Polyline stations_;
+  std::vector<std::size_t> corners_;  ///< of the line, among the stations
+};
 }  // namespace
+
+Polyline over_ground(const Polyline& line, const World& world, double above_m, double tolerance_m,
+                     double slope) {
+  return line.empty() ? line : Gentle(line, world, above_m, tolerance_m, slope).route();
+}
 
 Polyline over_ground(const Polyline& line, const World& world, double above_m, double tolerance_m) {
   const OverGround over(world, above_m, tolerance_m);

@@ -14,6 +14,7 @@
 #include "flights.hpp"
 #include "given.hpp"
 #include "sweep.hpp"
+#include "wing_rows.hpp"
 
 namespace altiplan::cover {
 namespace {
@@ -29,6 +30,7 @@ class Cover final : public Task {
     const std::vector<Given> given = given_areas(params);
     for (const Given& area : given) {
       areas_.push_back(area_of(area, params.clearance_m));
+      outlines_.push_back(area_of({area.name, area.key, {area.polygon.outline, {}}}, 0));
       names_.push_back(area.name);
     }
     expect_apart(given);
@@ -50,9 +52,13 @@ class Cover final : public Task {
       high = 10'000 + *params_.above_ground_m;
     }
     Box box = Box::empty();
-    for (const Area& area : areas_) {
-      box = box.with({area.min().x(), area.min().y(), low});
-      box = box.with({area.max().x(), area.max().y(), high});
+    for (const Area& area : outlines_) {
+      const double row = params_.beyond_m > 0 ? params_.beyond_m + params_.spacing_m / 2 : 0;
+      const Point2 beyond = Point2::Constant(row);
+      const Point2 min = area.min() - beyond;
+      const Point2 max = area.max() + beyond;
+      box = box.with({min.x(), min.y(), low});
+      box = box.with({max.x(), max.y(), high});
     }
     return box;
   }
@@ -72,10 +78,102 @@ class Cover final : public Task {
     return std::make_shared<kit::ShapeLayer>(std::move(islands));
   }
 
+  /// Steepest over the ground, both ways, that the limits through the air allow in any wind.
+  static double slope_of(const Request& request) {
+    const double angle = std::min(
+        {request.limits.max_slope(), request.vehicle.wing->climb, request.vehicle.wing->sink});
+    const double speed = request.air_speed();
+    double strongest = 0;
+    for (const auto& layer : request.wind.layers) {
+      strongest = std::max(strongest, layer.velocity.norm());
+    }
+    constexpr double kRounding = 0.999;
+    return kRounding * std::tan(angle) * speed / (speed + strongest);
+  }
+
+  /// Rows alone: a planner turns from each to the next.
+  TaskOrder order_of_wing(const Request& request, const TaskEnds& ends) const {
+    TaskOrder order;
+    if (params_.capacity_s) {
+      order.status = PlanStatus::invalid_problem;
+      order.message = "capacity_s: an aeroplane covers areas in one flight";
+      return order;
+    }
+    const auto place = [](const std::optional<Vec3>& end) {
+      return end ? std::optional(flat(*end)) : std::nullopt;
+    };
+    const double radius =
+        std::max(request.limits.min_turn_radius, request.vehicle.wing->turn_radius());
+    const auto goal = ends.goal || !params_.closed ? ends.goal : ends.start;
+    WingProblem problem{{},          params_.spacing_m, params_.beyond_m, radius, place(ends.start),
+                        place(goal), params_.closed};
+    for (std::size_t i = 0; i < areas_.size(); ++i) {
+      problem.fields.push_back({areas_[i], outlines_[i]});
+    }
+    BudgetWatch watch(request.budget);
+    RandomStream random = request.random;
+    const double slope = slope_of(request);
+    // Waypoints where a row begins and ends, between the leads.
+    const auto pass_of = [&](const WingRow& row) {
+      const Point2 lead = params_.beyond_m / row.length() * (row.line.b - row.line.a);
+      Polyline pass;
+      const auto add = [&](const Point2& p) { pass.emplace_back(p.x(), p.y(), height_m_); };
+      add(row.line.a);
+      if (row.leads[0]) {
+        add(row.line.a + lead);
+      }
+      if (row.leads[1]) {
+        add(row.line.b - lead);
+      }
+      add(row.line.b);
+      return params_.above_ground_m ? kit::over_ground(pass, world_, *params_.above_ground_m,
+                                                       params_.tolerance_m, slope)
+                                    : pass;
+    };
+    const auto refusal = [&](const WingRow& row) -> std::string {
+      try {
+        pass_of(row);
+        return "";
+      } catch (const Error& error) {
+        return error.what();
+      }
+    };
+    const WingRows found = wing_rows(problem, params_.attempts, random(), refusal,
+                                     [&](std::uint64_t rows) { return watch.spent(rows); });
+    order.counters = {{"expanded", std::int64_t(found.iterations)}};
+    order.budget_hit = !found.is_complete;
+    if (found.rows.empty()) {
+      order.status = !found.is_complete
+                         ? watch.cancelled() ? PlanStatus::cancelled : PlanStatus::timed_out
+                         : PlanStatus::no_route;
+      order.message = !found.is_complete      ? "the budget ended before the first tour"
+                      : found.message.empty() ? "there is no place for a row: lower spacing_m"
+                                              : found.message;
+      return order;
+    }
+    Polyline flown;
+    if (ends.start) {
+      flown.push_back(*ends.start);
+    }
+    for (const WingRow& row : found.rows) {
+      Polyline pass = pass_of(row);
+      flown.insert(flown.end(), pass.begin(), pass.end());
+      order.passes.push_back({std::move(pass)});
+    }
+    order.status = PlanStatus::solved;
+    order.closes = params_.closed;
+    flown.push_back(order.last(ends));
+    order.time_s = flown_time(Route(without_repeats(flown)), request);
+    return order;  // nothing is known of other orders: the bound stays 0
+  }
+
   TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
+    if (request.vehicle.wing) {
+      return order_of_wing(request, ends);
+    }
     TaskOrder order;
     const Vehicle& vehicle = request.vehicle;
-    const bool stops = !vehicle.wing && !vehicle.acceleration.corner_radius_m;
+    const bool stops = !vehicle.acceleration.corner_radius_m;
     const LegTime time{request.air_speed(), stops ? vehicle.acceleration.mps2 : kInfinity};
     const auto place = [](const std::optional<Vec3>& end) {
       return end ? std::optional(flat(*end)) : std::nullopt;
@@ -257,6 +355,7 @@ class Cover final : public Task {
 
   Params params_;
   std::vector<Area> areas_;
+  std::vector<Area> outlines_;  ///< of each, without islands and their clearance
   std::vector<std::string> names_;
   double height_m_;
   World world_;  ///< with above_ground_m

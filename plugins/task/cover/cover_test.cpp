@@ -293,6 +293,136 @@ TEST(Cover, KeepsClearOfIslands) {
                Error);
 }
 
+/// Turns of 40 m.
+Request aeroplane() {
+  Request request = testing::request_in({}, {0, 0, 0}, {0, 0, 0}, {{-1e3, -1e3, 0}, {1e3, 1e3, 0}});
+  Wing wing;
+  wing.airspeed_mps = 15.05;
+  request.vehicle.speed_mps = wing.airspeed_mps;
+  request.vehicle.wing = wing;
+  return request;
+}
+
+const char* const kField =
+    "outline_m: [[0, 0], [500, 60], [460, 380], [-40, 300]], "
+    "holes_m: [[[180, 140], [240, 150], [230, 200]]], spacing_m: 30, clearance_m: 45, "
+    "beyond_m: 60";
+
+TEST(Cover, AnAeroplaneFliesStraightRowsBeyondTheArea) {
+  const auto task = testing::make_task("cover", "{closed: false, " + std::string(kField) + "}");
+  const TaskOrder order = task->order(aeroplane(), {});
+  ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+  const auto islands = task->obstacles();
+  const Vec3 along = (order.passes[0].points.back() - order.passes[0].points[0]).normalized();
+  double joins = 0;
+  for (std::size_t i = 0; i < order.passes.size(); ++i) {
+    const Polyline& row = order.passes[i].points;
+    ASSERT_GE(row.size(), 2U);
+    for (std::size_t j = 1; j < row.size(); ++j) {
+      EXPECT_NEAR(std::abs((row[j] - row[j - 1]).normalized().dot(along)), 1, 1e-9);
+    }
+    for (double t = 0; t <= 1; t += 0.001) {
+      const Vec3 p = row[0] + t * (row.back() - row[0]);
+      EXPECT_GE(islands->clearance(p), 0.894 * 45) << i << ": " << p.transpose();
+    }
+    joins += i > 0 ? (row[0] - order.passes[i - 1].points.back()).norm() : 0;
+  }
+  // Neighbours are too near to turn from one to the next: others are flown in between.
+  EXPECT_GT(joins, double(order.passes.size() - 1) * 50);
+  RandomStream random(3);
+  int places = 0;
+  const Polyline corners{{0, 0, 0}, {500, 60, 0}, {460, 380, 0}, {-40, 300, 0}};
+  const auto is_within = [&](const Vec3& p) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec3 way = corners[(i + 1) % corners.size()] - corners[i];
+      const Vec3 off = p - corners[i];
+      if (way.x() * off.y() - way.y() * off.x() < 0) {
+        return false;
+      }
+    }
+    return islands->clearance(p) > 120;  // beyond corners of its clearance, and a strip
+  };
+  while (places < 20'000) {
+    const Vec3 p = random.in({{-40, 0, 0}, {500, 380, 0}});
+    if (!is_within(p)) {
+      continue;
+    }
+    ++places;
+    EXPECT_TRUE(std::any_of(order.passes.begin(), order.passes.end(), [&](const Pass& pass) {
+      const Vec3 way = (pass.points.back() - pass.points[0]).normalized();
+      const double at = (p - pass.points[0]).dot(way);
+      const double end = (pass.points.back() - pass.points[0]).norm();
+      return (p - pass.points[0] - at * way).norm() <= 15 + 1e-6 && at >= 0 && at <= end;
+    })) << p.transpose();
+  }
+  // Each has its beginning and its end, and where it goes on beyond the outline those of its leads.
+  for (const Pass& pass : order.passes) {
+    const Polyline& row = pass.points;
+    for (const bool begins : {true, false}) {
+      const Vec3& end = begins ? row.front() : row.back();
+      if (islands->clearance(end) > 100) {
+        ASSERT_GE(row.size(), 3U);
+        EXPECT_NEAR((end - (begins ? row[1] : row[row.size() - 2])).norm(), 60, 1e-9);
+        EXPECT_FALSE(is_within(end));
+      }
+    }
+  }
+}
+
+TEST(Cover, AnAeroplaneClimbsNoSteeperThanItCan) {
+  constexpr int kPosts = 40;
+  std::vector<float> heights;  // ridges from south to north: slopes of 25 % across
+  for (int j = 0; j < kPosts; ++j) {
+    for (int i = 0; i < kPosts; ++i) {
+      heights.push_back(float(200 + 25 * std::abs(i % 10 - 5) + 2 * std::abs(j % 7 - 3)));
+    }
+  }
+  const World world = testing::world_of(std::make_shared<testing::Posts>(
+      HeightField({-1000, -1000}, {100, 100}, kPosts, kPosts, std::move(heights))));
+  const auto order_of = [&](const char* tolerance, const Request& request) {
+    return testing::make_task(
+               "cover",
+               std::string("{closed: false, above_ground_m: 200, outline_m: [[0, 0], "
+                           "[900, 0], [900, 400], [0, 400]], spacing_m: 80, "
+                           "beyond_m: 60, tolerance_m: ") +
+                   tolerance + "}",
+               world)
+        ->order(request, {});
+  };
+  const auto steepest = [&](const TaskOrder& order, double tolerance) {
+    double slope = 0;
+    for (const Pass& pass : order.passes) {
+      for (std::size_t i = 1; i < pass.points.size(); ++i) {
+        const Vec3 way = pass.points[i] - pass.points[i - 1];
+        slope = std::max(slope, std::abs(way.z()) / way.head<2>().norm());
+        EXPECT_GE(world.ground_gap(pass.points[i - 1], pass.points[i]), 200 - tolerance - 1e-6);
+        EXPECT_LE(world.ground_gap_max(pass.points[i - 1], pass.points[i]), 200 + tolerance + 1e-6);
+      }
+    }
+    return slope;
+  };
+  const double limit = std::tan(aeroplane().vehicle.wing->climb);  // 17.6 %
+  const TaskOrder across = order_of("40", aeroplane());
+  ASSERT_EQ(across.status, PlanStatus::solved) << across.message;
+  EXPECT_LE(steepest(across, 40), limit);
+  // Rows across the ridges are shorter in all, but only those along them keep 5 m.
+  const TaskOrder along = order_of("5", aeroplane());
+  ASSERT_EQ(along.status, PlanStatus::solved) << along.message;
+  EXPECT_GT(along.passes.size(), across.passes.size());
+  EXPECT_LE(steepest(along, 5), limit);
+  // With the wind it climbs less by the metre.
+  Request windy = aeroplane();
+  windy.wind.layers = {{-kInfinity, {8, 0, 0}}};
+  const TaskOrder slow = order_of("40", windy);
+  ASSERT_EQ(slow.status, PlanStatus::solved) << slow.message;
+  EXPECT_LE(steepest(slow, 40), limit * 15.05 / 23.05);
+  Request weak = aeroplane();
+  weak.vehicle.wing->climb = radians(0.5);
+  const TaskOrder none = order_of("0.2", weak);
+  EXPECT_EQ(none.status, PlanStatus::no_route);
+  EXPECT_NE(none.message.find("is too steep"), std::string::npos) << none.message;
+}
+
 TEST(Cover, RefusesAreasThatAreNone) {
   const auto tiny =
       testing::make_task("cover", "{outline_m: [[0, 0], [1, 0], [1, 1]], spacing_m: 30}");

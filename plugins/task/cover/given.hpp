@@ -35,6 +35,7 @@ struct Params {
   std::optional<double> above_ground_m;
   double tolerance_m = 2;
   double clearance_m = 0;
+  double beyond_m = 0;
   int attempts = 3;
 
   void describe(Fields& f) {
@@ -67,6 +68,12 @@ struct Params {
         .unit("m")
         .at_least(0)
         .doc("distance of the tour from islands, within which nothing is covered either");
+    f("beyond_m", beyond_m)
+        .unit("m")
+        .at_least(0)
+        .doc(
+            "of an aeroplane: its rows go on by so much, beyond where their strips leave the "
+            "outline; 0: they end at it");
     f("attempts", attempts).range(1, 1000).doc("patterns of lines that are tried");
   }
 };

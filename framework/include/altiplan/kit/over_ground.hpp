@@ -13,4 +13,10 @@ namespace altiplan::kit {
 /// the place, where there is no ground.
 ALTIPLAN_API Polyline over_ground(const Polyline& line, const World& world, double above_m,
                                   double tolerance_m);
+
+/// The same, with no leg steeper than `slope` (rise by run, positive), up or down: where the ground
+/// is, the height leaves it within the tolerance, the ends too. Throws Error, with the place, where
+/// that is not enough.
+ALTIPLAN_API Polyline over_ground(const Polyline& line, const World& world, double above_m,
+                                  double tolerance_m, double slope);
 }  // namespace altiplan::kit
