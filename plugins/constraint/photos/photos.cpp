@@ -2,8 +2,8 @@
 //
 // A camera that looks straight down from the height h shows h / f of the sensor's width and height,
 // f being the focal length: a ground sample distance of h w / (n f), w being the width, n the
-// pixels across, and a photo of h l / f along the flight, l being the sensor's height. Both grow
-// with h: limits of scale and overlap are limits of the height above the ground.
+// pixels across, and a photo of h w / f across and h l / f along the flight, l being the sensor's
+// height. All grow with h: limits of scale and overlap are limits of the height above the ground.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -23,6 +23,8 @@ struct Params {
   std::optional<double> max_gsd_cm;
   std::optional<double> trigger_m;
   double min_overlap = 0.75;
+  std::optional<double> spacing_m;
+  double min_sidelap = 0.7;
   AppliesTo applies_to = AppliesTo::both;
 
   void describe(Fields& f) {
@@ -39,12 +41,19 @@ struct Params {
     f("min_overlap", min_overlap)
         .range(0, 0.99)
         .doc("with trigger_m: share of a photo that the next one shows, too, of the ground below");
+    f("spacing_m", spacing_m).unit("m").greater_than(0).doc("distance of lines side by side");
+    f("min_sidelap", min_sidelap)
+        .range(0, 0.99)
+        .doc(
+            "with spacing_m: share of a photo that one of the next line, from the same height, "
+            "shows, too, of the ground below");
     f("applies_to", applies_to,
       {{"both", AppliesTo::both}, {"route", AppliesTo::route}, {"track", AppliesTo::track}})
         .doc(
             "what it restricts: narrower limits for the route than for the track leave a margin "
             "for the flight");
-    f.check(min_gsd_cm || max_gsd_cm || trigger_m, "expected min_gsd_cm, max_gsd_cm or trigger_m");
+    f.check(min_gsd_cm || max_gsd_cm || trigger_m || spacing_m,
+            "expected min_gsd_cm, max_gsd_cm, trigger_m or spacing_m");
     f.check(min_gsd_cm.value_or(0) < max_gsd_cm.value_or(1e9),
             "expected min_gsd_cm below max_gsd_cm");
   }
@@ -53,11 +62,12 @@ struct Params {
     return 100 * height * sensor_mm[0] / (image_px[0] * focal_mm);
   }
   double height_of(double cm) const { return cm / gsd_cm(1); }
-  double overlap(double height) const {
-    return 1 - *trigger_m * focal_mm / (height * sensor_mm[1]);
+  /// Share of a photo that another, so far away, shows too; `side` of the sensor lies that way.
+  double shared(double distance, std::size_t side, double height) const {
+    return 1 - distance * focal_mm / (height * sensor_mm[side]);
   }
-  double height_of_overlap() const {
-    return *trigger_m * focal_mm / ((1 - min_overlap) * sensor_mm[1]);
+  double height_of_shared(double distance, std::size_t side, double share) const {
+    return distance * focal_mm / ((1 - share) * sensor_mm[side]);
   }
 };
 
@@ -65,7 +75,12 @@ class Photos final : public Constraint {
  public:
   explicit Photos(const Params& params) : params_(params) {
     lowest_ = params.min_gsd_cm ? params.height_of(*params.min_gsd_cm) : -kInfinity;
-    overlapping_ = params.trigger_m ? params.height_of_overlap() : -kInfinity;
+    overlapping_ = params.trigger_m
+                       ? params.height_of_shared(*params.trigger_m, kAlong, params.min_overlap)
+                       : -kInfinity;
+    beside_ = params.spacing_m
+                  ? params.height_of_shared(*params.spacing_m, kAcross, params.min_sidelap)
+                  : -kInfinity;
     highest_ = params.max_gsd_cm ? params.height_of(*params.max_gsd_cm) : kInfinity;
   }
 
@@ -78,7 +93,7 @@ class Photos final : public Constraint {
         !is_finite(leg.to)) {
       return false;
     }
-    const double low = std::max(lowest_, overlapping_) - kLengthTolerance;
+    const double low = std::max({lowest_, overlapping_, beside_}) - kLengthTolerance;
     return leg.world->ground_gap(leg.from, leg.to) >= std::max(low, 0.0) &&
            leg.world->ground_gap_max(leg.from, leg.to) <=
                std::min(highest_ + kLengthTolerance, kFar);
@@ -115,16 +130,23 @@ class Photos final : public Constraint {
           "a pixel shows %.3f cm; at most %.3f cm are permitted");
     }
     if (low < overlapping_ - kLengthTolerance && low > 0) {
-      add(low_at, params_.overlap(low), params_.min_overlap, "",
+      add(low_at, params_.shared(*params_.trigger_m, kAlong, low), params_.min_overlap, "",
           "photos have an overlap of %.3f; at least %.3f is required");
+    }
+    if (low < beside_ - kLengthTolerance && low > 0) {
+      add(low_at, params_.shared(*params_.spacing_m, kAcross, low), params_.min_sidelap, "",
+          "photos have a side overlap of %.3f; at least %.3f is required");
     }
     return all;
   }
 
+  static constexpr std::size_t kAcross = 0;  ///< sides of the sensor
+  static constexpr std::size_t kAlong = 1;
   static constexpr double kFar = 1e7;  ///< metres: beyond it there is no ground
   Params params_;
   double lowest_;  ///< heights above the ground
   double overlapping_;
+  double beside_;
   double highest_;
 };
 }  // namespace

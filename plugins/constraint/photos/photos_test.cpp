@@ -42,6 +42,8 @@ TEST(Photos, RefusesWrongParameters) {
   };
   EXPECT_EQ(problems(kCamera + "max_gsd_cm: 2"), "");
   EXPECT_NE(problems(kCamera + "min_overlap: 0.5"), "");
+  EXPECT_NE(problems(kCamera + "min_sidelap: 0.5"), "");
+  EXPECT_EQ(problems(kCamera + "spacing_m: 5"), "");
   EXPECT_NE(problems(kCamera + "max_gsd_cm: 2, min_gsd_cm: 2"), "");
   EXPECT_NE(problems("sensor_mm: [0, 1], image_px: [9, 9], focal_mm: 9, max_gsd_cm: 2"), "");
   EXPECT_NE(problems("max_gsd_cm: 2"), "");
@@ -69,6 +71,23 @@ TEST(Photos, JudgesTheOverlapOfTheGroundBelow) {
   EXPECT_NEAR(near.violations.back().value, 1 - 24.375 / 68.25, 1e-6);
   EXPECT_NE(near.violations.back().message.find("an overlap of 0.643; at least 0.750"),
             std::string::npos);
+}
+
+/// At 100 m a photo shows 146.875 m across the flight.
+TEST(Photos, JudgesTheSideOverlapOfTheGroundBelow) {
+  EXPECT_TRUE(judged("spacing_m: 44.0625, min_sidelap: 0.7", kFollowing).ok());
+  EXPECT_FALSE(judged("spacing_m: 44.1, min_sidelap: 0.7", kFollowing).ok());
+  const CheckResult near = judged("spacing_m: 44.0625", kLevel);  // 70 m over the ridge
+  ASSERT_FALSE(near.ok());
+  EXPECT_NEAR(near.violations.back().value, 1 - 44.0625 / (0.7 * 146.875), 1e-6);
+  EXPECT_NE(near.violations.back().message.find("a side overlap of 0.571; at least 0.700"),
+            std::string::npos);
+  EXPECT_TRUE(judged("spacing_m: 44.0625, min_sidelap: 0.571", kLevel).ok());
+  const Request request = problem("spacing_m: 44.0625");
+  const auto photos = make_constraint("photos", "{" + kCamera + "spacing_m: 44.0625}");
+  EXPECT_FALSE(photos->admits({std::nullopt, kLevel[0], kLevel[1], request.world.get()}));
+  EXPECT_TRUE(photos->admits({std::nullopt, kFollowing[0], kFollowing[1], request.world.get()}));
+  EXPECT_FALSE(judged("spacing_m: 20, trigger_m: 24.375", kLevel).ok());  // along it has less
 }
 
 TEST(Photos, NeedsGround) {
