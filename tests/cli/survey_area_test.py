@@ -336,6 +336,38 @@ class Survey(unittest.TestCase):
         _, err = self.call("check", "plain.plan", "--survey", "--terrain", TERRAIN, code=3)
         self.assertIn("plain.plan: expected a survey that altiplan survey has written", err)
 
+    def test_check_computes_what_surveys_of_qgroundcontrol_show(self):
+        area = self.write(kml(RIDGE, FIELD))
+        whole = self.survey(area, TERRAIN)["coverage"]
+        plan = json.loads((self.folder / "out/route.plan").read_text())
+        del plan["altiplan"]
+        items = plan["mission"]["items"]
+        camera = {"version": 2, "CameraName": "a6000", "SensorWidth": 23.5, "SensorHeight": 15.6, "ImageWidth": 6000,
+                  "ImageHeight": 4000, "FocalLength": 16, "Landscape": True, "AdjustedFootprintSide": 36,
+                  "AdjustedFootprintFrontal": 20, "DistanceToSurface": 81.7, "DistanceMode": 2}
+        style = {"version": 2, "HoverAndCapture": False, "CameraCalc": camera, "Items": items[2:-1]}
+        survey = {"type": "ComplexItem", "complexItemType": "survey", "version": 5, "TransectStyleComplexItem": style,
+                  "polygon": [lonlat(RIDGE, *p)[::-1] for p in FIELD]}
+        plan["mission"]["items"] = [*items[:2], survey, items[-1]]
+        self.write(json.dumps(plan), "qgc.plan")
+        self.assertAlmostEqual(self.shown("qgc.plan", TERRAIN)["coverage"], whole, 3)
+        camera["Landscape"] = False  # 80 m across, which neighbours 36 m apart share
+        self.write(json.dumps(plan), "qgc.plan")
+        self.assertGreater(self.shown("qgc.plan", TERRAIN)["coverage"], 0.9)
+        camera["FocalLength"] = 64  # 20 m across: gaps between the lines
+        self.write(json.dumps(plan), "qgc.plan")
+        self.assertLess(self.shown("qgc.plan", TERRAIN)["coverage"], 0.6)
+        for change, said in ((lambda: style.update(HoverAndCapture=True), "photos at stops (HoverAndCapture) are not counted"),
+                             (lambda: camera.pop("Landscape"), "expected a survey of QGroundControl"),
+                             (lambda: camera.update(Landscape=True, FocalLength=0), "expected positive SensorWidth"),
+                             (lambda: camera.pop("SensorWidth"), "expected a camera with SensorWidth")):
+            style["HoverAndCapture"] = False
+            change()
+            self.write(json.dumps(plan), "qgc.plan")
+            _, err = self.call("check", "qgc.plan", "--survey", "--terrain", TERRAIN, code=3)
+            self.assertIn("qgc.plan: mission.items.2", err)
+            self.assertIn(said, err)
+
     def test_errors_say_what_was_expected(self):
         area = self.write(kml(RIDGE, FIELD))
         terrain = ["--terrain", TERRAIN]

@@ -21,6 +21,7 @@ using host::Json;
 constexpr double kOffLines = 3;
 /// An aeroplane, once it has lined up.
 constexpr double kWingOffLines = 10;
+constexpr int kAeroplane = 1;  ///< MAV_TYPE
 
 double off_lines(const host::FirstRoute& first) {
   return first.beyond_m() > 0 ? kWingOffLines : kOffLines;
@@ -102,13 +103,81 @@ formats::Ring ring_in(const Json& lonlat, const Frame& frame) {
   return formats::without_repeats(ring);
 }
 
+/// Of a survey item of QGroundControl: its area, and its camera, by what it shows of flat ground
+/// from a metre above. Throws Error where the item does not tell, or photos are not taken at
+/// distances.
+void add_survey_item(const Json& item, const std::string& place, const Frame& frame,
+                     Written& written) {
+  const Json& style = item.at("TransectStyleComplexItem");
+  const Json& camera = style.at("CameraCalc");
+  if (!camera.contains("SensorWidth")) {
+    throw Error(place +
+                ".CameraCalc: expected a camera with SensorWidth, SensorHeight and "
+                "FocalLength: without it nobody knows what photos show");
+  }
+  if (style.at("HoverAndCapture").get<bool>()) {
+    throw Error(place + ": photos at stops (HoverAndCapture) are not counted");
+  }
+  const bool is_landscape = camera.at("Landscape").get<bool>();
+  const double width = camera.at("SensorWidth").get<double>();
+  const double height = camera.at("SensorHeight").get<double>();
+  const double twice_focal = 2 * camera.at("FocalLength").get<double>();
+  if (!(width > 0 && height > 0 && twice_focal > 0)) {
+    throw Error(place + ".CameraCalc: expected positive SensorWidth, SensorHeight and FocalLength");
+  }
+  const host::PhotoLines photos{{},
+                                0,
+                                (is_landscape ? width : height) / twice_focal,
+                                (is_landscape ? height : width) / twice_focal,
+                                kOffLines};
+  if (!written.areas.empty() && (photos.half_across != written.photos.half_across ||
+                                 photos.half_along != written.photos.half_along)) {
+    throw Error(place + ".CameraCalc: expected the camera of the survey before it");
+  }
+  written.photos = photos;
+  Json lonlat = Json::array();
+  for (const Json& corner : item.at("polygon")) {
+    lonlat.push_back({corner.at(1), corner.at(0)});
+  }
+  written.areas.push_back({ring_in(lonlat, frame), {}});
+  if (const std::string problem = formats::polygon_problem(written.areas.back());
+      !problem.empty()) {
+    throw Error(place + ".polygon: " + problem);
+  }
+}
+
+/// Of a plan with surveys of QGroundControl; no areas: it has none.
+Written survey_items_in(const std::string& file, const Json& plan, const Frame& frame) {
+  Written written;
+  const Json items =
+      plan.is_object() ? plan.value("/mission/items"_json_pointer, Json::array()) : Json::array();
+  for (std::size_t n = 0; n < items.size(); ++n) {
+    if (!items[n].is_object() || items[n].value("complexItemType", Json()) != "survey") {
+      continue;
+    }
+    const std::string place = file + ": mission.items." + std::to_string(n);
+    try {
+      add_survey_item(items[n], place, frame, written);
+    } catch (const Json::exception&) {
+      throw Error(place +
+                  ": expected a survey of QGroundControl, version 4 or 5, with a camera: polygon, "
+                  "and TransectStyleComplexItem with HoverAndCapture and CameraCalc (SensorWidth, "
+                  "SensorHeight, FocalLength, Landscape)");
+    }
+  }
+  return written;
+}
+
 /// Throws Error for a plan without one, or a damaged one.
 Written written_in(const std::string& file, const Frame& frame) {
   const Json plan = Json::parse(formats::read_file(file), nullptr, false);
   if (!plan.is_object() || !plan.contains("altiplan") || !plan["altiplan"].contains("survey")) {
+    if (Written items = survey_items_in(file, plan, frame); !items.areas.empty()) {
+      return items;
+    }
     throw Error(file +
-                ": expected a survey that altiplan survey has written (altiplan.survey); "
-                "surveys of QGroundControl are checked without --terrain");
+                ": expected a survey that altiplan survey has written (altiplan.survey), or one of "
+                "QGroundControl");
   }
   const std::string place = file + ": altiplan.survey: ";
   const Json& survey = plan["altiplan"]["survey"];
@@ -185,6 +254,9 @@ int check_shown(const std::string& file, const PlanCheck& options,
   const JudgedPlan judged = judged_plan(options, overrides);
   const World& world = judged.world.truth;
   Written written = written_in(file, world.frame());
+  if (judged.mission.vehicle_type == kAeroplane) {
+    written.photos.off_m = std::max(written.photos.off_m, kWingOffLines);
+  }
   find_lines(judged, written.photos);
   const std::size_t stretches = written.photos.lines.size();
   std::vector<Polyline> sure;
