@@ -357,7 +357,7 @@ class Survey(unittest.TestCase):
         camera["FocalLength"] = 64  # 20 m across: gaps between the lines
         self.write(json.dumps(plan), "qgc.plan")
         self.assertLess(self.shown("qgc.plan", TERRAIN)["coverage"], 0.6)
-        for change, said in ((lambda: style.update(HoverAndCapture=True), "photos at stops (HoverAndCapture) are not counted"),
+        for change, said in ((lambda: style.update(HoverAndCapture=True), "(HoverAndCapture) are not counted"),
                              (lambda: camera.pop("Landscape"), "expected a survey of QGroundControl"),
                              (lambda: camera.update(Landscape=True, FocalLength=0), "expected positive SensorWidth"),
                              (lambda: camera.pop("SensorWidth"), "expected a camera with SensorWidth")):
@@ -392,7 +392,8 @@ class Survey(unittest.TestCase):
         self.refused("--gsd-cm or --agl is required", area, *terrain, *CAMERA[:2], code=2)
         self.refused("missing.kml", "missing.kml", *terrain, *CAMERA)
         wing = ["--wing", "60"]
-        self.refused("an aeroplane's plan ends in a circle", area, *terrain, *CAMERA, *wing, "--flight-minutes", "9", code=2)
+        self.refused("an aeroplane's plan ends in a circle", area, *terrain, *CAMERA, *wing, "--flight-minutes", "9",
+                     code=2)
         cable = self.write(document(a=line(RIDGE, (0, 0), (300, 9))), "cable.kml")
         self.refused("cable.kml has a line, which a copter follows", cable, *terrain, *CAMERA, *wing)
         self.refused("0.8 s, which takes the camera 1 s", area, *terrain, *CAMERA, "--speed", "25")

@@ -43,7 +43,8 @@ class Corridor(unittest.TestCase):
                                         "geometry": {"type": "LineString", "coordinates": coordinates}}))
             run = subprocess.run(
                 [PROGRAM, "survey", line, "--terrain", DATA / name, "--camera", "sony_a6000_16mm", "--agl", str(AGL),
-                 "--offset", str(offset), "-o", "out", "--json"], cwd=folder, capture_output=True, text=True, check=False)
+                 "--offset", str(offset), "-o", "out", "--json"],
+                cwd=folder, capture_output=True, text=True, check=False)
             self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
             self.assertEqual(json.loads(run.stdout)["verdict"], "pass")
             plan = json.loads((pathlib.Path(folder) / "out/route.plan").read_text())
@@ -65,8 +66,8 @@ class Corridor(unittest.TestCase):
             above += model.leg(a, b)
         away = np.concatenate(away)
         length = sum(np.linalg.norm(np.subtract(b, a)[:2]) for a, b in zip(passed, passed[1:]))
-        print(f"{name} at {offset:+} m: {length:.0f} m, {len(passed)} waypoints, {away.min():.3f} to {away.max():.3f} m "
-              f"beside the line, {min(above):.2f} to {max(above):.2f} m above ground", file=sys.stderr)
+        print(f"{name} at {offset:+} m: {length:.0f} m, {len(passed)} waypoints, "
+              f"{away.min():.3f} to {away.max():.3f} m beside the line, {min(above):.2f} to {max(above):.2f} m above ground", file=sys.stderr)
         self.assertGreater(length, 1700)
         self.assertGreaterEqual(away.min(), 29)
         self.assertLessEqual(away.max(), 31)
