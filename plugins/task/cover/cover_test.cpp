@@ -369,6 +369,26 @@ TEST(Cover, AnAeroplaneFliesStraightRowsBeyondTheArea) {
   }
 }
 
+/// Dubins's paths there and back are equal but for rounding, which local search must not chase.
+TEST(Cover, AnAeroplanesRowsAreOrderedInTheEnd) {
+  RandomStream random(5);
+  for (int n = 0; n < 60; ++n) {
+    std::string ring;
+    for (const Vec3& corner :
+         {Vec3(0, 0, 0), Vec3(500, 0, 0), Vec3(500, 400, 0), Vec3(0, 400, 0)}) {
+      const Vec3 p = corner + random.in({{-60, -60, 0}, {60, 60, 0}});
+      ring +=
+          (ring.empty() ? "[" : ", [") + std::to_string(p.x()) + ", " + std::to_string(p.y()) + "]";
+    }
+    const auto task = testing::make_task(
+        "cover",
+        "{closed: false, clearance_m: 48, beyond_m: 60, spacing_m: " + std::to_string(20 + 2 * n) +
+            ", outline_m: [" + ring + "], holes_m: [[[220, 180], [280, 185], [260, 240]]]}");
+    const TaskOrder order = task->order(aeroplane(), {});
+    EXPECT_EQ(order.status, PlanStatus::solved) << order.message;
+  }
+}
+
 TEST(Cover, AnAeroplaneClimbsNoSteeperThanItCan) {
   constexpr int kPosts = 40;
   std::vector<float> heights;  // ridges from south to north: slopes of 25 % across
