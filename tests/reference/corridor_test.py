@@ -67,7 +67,8 @@ class Corridor(unittest.TestCase):
         away = np.concatenate(away)
         length = sum(np.linalg.norm(np.subtract(b, a)[:2]) for a, b in zip(passed, passed[1:]))
         print(f"{name} at {offset:+} m: {length:.0f} m, {len(passed)} waypoints, "
-              f"{away.min():.3f} to {away.max():.3f} m beside the line, {min(above):.2f} to {max(above):.2f} m above ground", file=sys.stderr)
+              f"{away.min():.3f} to {away.max():.3f} m beside the line, "
+              f"{min(above):.2f} to {max(above):.2f} m above ground", file=sys.stderr)
         self.assertGreater(length, 1700)
         self.assertGreaterEqual(away.min(), 29)
         self.assertLessEqual(away.max(), 31)
