@@ -76,10 +76,13 @@ TEST(Clustered, OfNothing) {
 }
 
 TEST(Clustered, SaysWhyThereIsNoInterval) {
-  EXPECT_EQ(why_no_interval({3, true}, 0.95), "too few scenarios: at least 6 for 95 %");
-  EXPECT_EQ(why_no_interval({2, false}, 0.99), "too few repetitions: at least 8 for 99 %");
-  EXPECT_EQ(why_no_interval({6, true}, 0.95), "");
-  EXPECT_EQ(why_no_interval({71, true}, 0.95, 0.95), "too few scenarios: at least 72 for 95 %");
+  EXPECT_EQ(why_no_interval({3, true}, 0.95, fewest_units(0.95)),
+            "too few scenarios: at least 6 for 95 %");
+  EXPECT_EQ(why_no_interval({2, false}, 0.99, fewest_units(0.99)),
+            "too few repetitions: at least 8 for 99 %");
+  EXPECT_EQ(why_no_interval({6, true}, 0.95, fewest_units(0.95)), "");
+  EXPECT_EQ(why_no_interval({71, true}, 0.95, fewest_units(0.95, 0.95)),
+            "too few scenarios: at least 72 for 95 %");
   const auto few = effect(pairs(5, 9, [](std::size_t s, int) { return 101 + double(s); }));
   EXPECT_FALSE(few.interval);
   EXPECT_TRUE(few.test);
@@ -160,8 +163,8 @@ TEST(Clustered, QuantilesAndMeansOfRepetitions) {
   rare[3] = rare[50] = 1;
   EXPECT_EQ(mean_interval(rare, each(100, 1), 0.95).why_none, "all but 2 values are equal")
       << "two of two are no evidence";
-  EXPECT_EQ(mean_interval(std::span(values).first(15), std::span(groups).first(15), 0.95).why_none,
-            "too few scenarios: at least 6 for 95 %");
+  EXPECT_EQ(mean_interval(std::span(values).first(27), std::span(groups).first(27), 0.95).why_none,
+            "too few scenarios: at least 10 for 95 %");
 }
 
 TEST(Clustered, SuccessesOfOneRepetitionAreMcNemars) {

@@ -121,11 +121,15 @@ void simulate_means(int studies) {
   const Make mean = [](const Sample& s) { return mean_interval(s.values, s.groups, 0.95); };
   const Draw normal = [](RandomStream&, RandomStream& run) { return run.normal(); };
   const Draw skewed = [](RandomStream&, RandomStream& run) { return exponential(run); };
-  for (const int scenarios : {6, 10, 30}) {
-    expect_coverage(studies, "normal, " + std::to_string(scenarios), normal, scenarios, 1, 0, mean);
+  const Draw even = [](RandomStream&, RandomStream& run) { return run.uniform(); };
+  const Draw lognormal = [](RandomStream&, RandomStream& run) { return std::exp(run.normal()); };
+  for (const int scenarios : {10, 15, 20, 50}) {
+    const std::string of = ", " + std::to_string(scenarios);
+    expect_coverage(studies, "normal" + of, normal, scenarios, 1, 0, mean);
+    expect_coverage(studies, "uniform" + of, even, scenarios, 1, 0.5, mean);
+    expect_coverage(studies, "exponential" + of, skewed, scenarios, 1, 1, mean);
+    expect_coverage(studies, "lognormal" + of, lognormal, scenarios, 1, std::exp(0.5), mean);
   }
-  expect_coverage(studies, "exponential, 20", skewed, 20, 1, 1, mean);
-  expect_coverage(studies, "exponential, 60", skewed, 60, 1, 1, mean);
   expect_coverage(studies, "shared, 10 x 5", shared_normal, 10, 5, 0, mean);
   const Draw both = [](RandomStream& of_scenario, RandomStream& of_run) {
     return exponential(of_scenario) * exponential(of_run);

@@ -223,15 +223,19 @@ TEST(Intervals, QuantilesLieBetweenOrderStatistics) {
 }
 
 TEST(Intervals, MeansLeanWhereTheTailIs) {
-  const Sample even{-2, -1, -1, 1, 1, 2};
+  const Sample even{-3, -2, -2, -1, -1, 1, 1, 2, 2, 3};
   const auto symmetric = mean_interval(10, even, 0.95);
   ASSERT_TRUE(symmetric);
   EXPECT_NEAR(symmetric->low + symmetric->high, 20, 1e-12);
-  EXPECT_NEAR(symmetric->high - 10, 2.5705818 * std::sqrt(12.0 / 5 / 6), 1e-6) << "Student's t";
-  const auto skewed = mean_interval(10, Sample{-1, -1, -1, -1, -1, 5}, 0.95);
+  const double half = 2.2621572 * std::sqrt(38.0 / 9 / 10);
+  EXPECT_NEAR(symmetric->high - 10, half, 1e-6) << "Student's t";
+  const Sample slight{-3, -2, -2, -1, -1, 1, 1, 2, 2, 3.2};
+  EXPECT_NEAR(mean_interval(10, slight, 0.95)->high - 10, half, 0.1) << "as chance may have it";
+  const auto skewed = mean_interval(10, Sample{-1, -1, -1, -1, -1, -1, -1, -1, -1, 9}, 0.95);
+  EXPECT_NEAR(10 - skewed->low, 2.2621572, 1e-6) << "Student's t, whose error is 1 here";
   EXPECT_GT(skewed->high - 10, 2 * (10 - skewed->low));
-  EXPECT_FALSE(mean_interval(10, Sample{0, 0, 0, 0, 0, 0}, 0.95)) << "others may be rare";
-  EXPECT_FALSE(mean_interval(10, Sample{-1, 1, -1, 1, 0}, 0.95)) << "too few";
+  EXPECT_FALSE(mean_interval(10, Sample(10, 0.0), 0.95)) << "others may be rare";
+  EXPECT_FALSE(mean_interval(10, std::span(even).first(9), 0.95)) << "too few";
   EXPECT_FALSE(mean_interval(10, even, 1));
   EXPECT_FALSE(mean_interval(kInfinity, even, 0.95));
 }

@@ -110,7 +110,10 @@ std::string shortfall(const ClaimEntry& claim, const ClaimQuantity& quantity,
   }
   const Units units = units_of(groups);
   if (quantity.function != Function::share) {
-    const std::string why = why_no_interval(units, claim.confidence, quantity.q);
+    const std::size_t fewest = quantity.function == Function::mean
+                                   ? fewest_for_mean(claim.confidence)
+                                   : fewest_units(claim.confidence, quantity.q);
+    const std::string why = why_no_interval(units, claim.confidence, fewest);
     return why.empty() ? "" : "will be undecided: " + why;
   }
   const ClaimRange range = read_range(claim.is);

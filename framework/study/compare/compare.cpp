@@ -189,7 +189,8 @@ class Comparer {
     change.before = median(pairs.first);
     change.after = median(pairs.second);
     change.effect = paired_effect(pairs, is_ratio, kConfidence);
-    change.why_no_interval = why_no_interval(units_of(pairs.groups), kConfidence);
+    change.why_no_interval =
+        why_no_interval(units_of(pairs.groups), kConfidence, fewest_units(kConfidence));
     change.p = change.effect.test ? change.effect.test->p : kNone;
     if (pairs.first == pairs.second) {
       change.verdict = MetricChange::Verdict::same;

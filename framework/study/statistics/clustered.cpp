@@ -115,8 +115,7 @@ Units units_of(std::span<const std::size_t> groups) {
   return scenarios.size() > 1 ? Units{scenarios.size(), true} : Units{groups.size(), false};
 }
 
-std::string why_no_interval(const Units& units, double confidence, double q) {
-  const std::size_t fewest = fewest_units(confidence, q);
+std::string why_no_interval(const Units& units, double confidence, std::size_t fewest) {
   if (units.count >= fewest) {
     return "";
   }
@@ -156,7 +155,7 @@ MadeInterval quantile_interval(std::span<const double> values, std::span<const s
   }
   const Units units = units_of(groups);
   MadeInterval made;
-  made.why_none = why_no_interval(units, confidence, q);
+  made.why_none = why_no_interval(units, confidence, fewest_units(confidence, q));
   if (!made.why_none.empty()) {
     return made;
   }
@@ -178,13 +177,13 @@ MadeInterval mean_interval(std::span<const double> values, std::span<const std::
   }
   const Units units = units_of(groups);
   MadeInterval made;
-  made.why_none = why_no_interval(units, confidence);
+  made.why_none = why_no_interval(units, confidence, fewest_for_mean(confidence));
   if (!made.why_none.empty()) {
     return made;
   }
   const std::vector<double> deviations = deviations_of(values, groups);
   const std::size_t others = deviations.size() - greatest_count(deviations);
-  if (others < fewest_units(confidence) && 2 * others < deviations.size()) {
+  if (others < fewest_for_mean(confidence) && 2 * others < deviations.size()) {
     made.why_none = others == 0 ? "all values are equal"
                                 : "all but " + std::to_string(others) + " values are equal";
     return made;

@@ -20,9 +20,9 @@ struct Units {
 };
 Units units_of(std::span<const std::size_t> groups);
 
-/// Why there is no interval of a median: "too few scenarios: at least 6 for 95 %"; "" if there is
-/// one. Likewise of another quantile q.
-std::string why_no_interval(const Units& units, double confidence, double q = 0.5);
+/// Why there is no interval that needs so many units: "too few scenarios: at least 6 for 95 %"; ""
+/// if there is one.
+std::string why_no_interval(const Units& units, double confidence, std::size_t fewest);
 
 /// An interval and its method: "Wilson, 20 pairs", "order statistics, 20 scenarios"; or why there
 /// is none.

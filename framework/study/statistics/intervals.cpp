@@ -103,6 +103,8 @@ std::optional<Interval> quantile_interval(std::span<const double> sample, double
   return Interval{value_with((1 + confidence) / 2), value_with((1 - confidence) / 2)};
 }
 
+std::size_t fewest_for_mean(double confidence) { return fewest_units(confidence) + 4; }
+
 std::optional<Interval> mean_interval(double estimate, std::span<const double> deviations,
                                       double confidence) {
   const double n = double(deviations.size());
@@ -112,20 +114,25 @@ std::optional<Interval> mean_interval(double estimate, std::span<const double> d
     squares += each * each;
     cubes += each * each * each;
   }
-  if (deviations.size() < std::max<std::size_t>(2, fewest_units(confidence)) || !(squares > 0) ||
+  if (deviations.size() < fewest_for_mean(confidence) || !(squares > 0) ||
       !is_confidence(confidence) || !std::isfinite(squares) || !std::isfinite(estimate)) {
     return std::nullopt;
   }
   const double error = std::sqrt(squares / (n - 1) / n);
-  const double skewness = cubes / n / std::pow(squares / n, 1.5);
   const double t = student_quantile((1 + confidence) / 2, int(deviations.size()) - 1);
-  // The inverse of Hall's cubic, which takes the skewness out of the studentized mean.
-  const auto untransformed = [&](double u) {
-    const double a = skewness / 3;
-    return std::abs(a) < 1e-9
-               ? u
-               : std::sqrt(n) / a * (std::cbrt(1 + 3 * a * (u / std::sqrt(n) - a / (2 * n))) - 1);
-  };
-  return Interval{estimate - error * untransformed(t), estimate - error * untransformed(-t)};
+  Interval interval{estimate - error * t, estimate + error * t};
+  // Of its own variance, as small samples understate it, by simulation again a little more so.
+  const double skewness =
+      cubes / n / std::pow(squares / n, 1.5) * std::sqrt(n * (n - 1)) / (n - 2) * (1 + 4 / n);
+  if (std::abs(skewness) > std::sqrt(6 / n) * (1 + 4 / n)) {
+    // The inverse of Hall's cubic, which takes the skewness out of the studentized mean.
+    const auto untransformed = [&](double u) {
+      const double a = skewness / 3;
+      return std::sqrt(n) / a * (std::cbrt(1 + 3 * a * (u / std::sqrt(n) - a / (2 * n))) - 1);
+    };
+    interval.low = std::min(interval.low, estimate - error * untransformed(t));
+    interval.high = std::max(interval.high, estimate - error * untransformed(-t));
+  }
+  return interval;
 }
 }  // namespace altiplan::study
