@@ -122,7 +122,33 @@ TEST(ReportText, TablesHoldHostileCells) {
     }
     EXPECT_EQ(bars, 3u) << row;
   }
-  EXPECT_NE(latex_text(table).find("x \\& y \\textbackslash{} & \\textbar{} \\\\\n"), string::npos);
+  EXPECT_NE(latex_text(table).find("x \\& y \\textbackslash{} & {\\textbar{}} \\\\\n"),
+            string::npos);
+}
+
+TEST(ReportText, FilesHaveNumbersInColumns) {
+  const Cell spread{"12.5 [9, 20]", 12.5, {{"12.5", 12.5}, {"9", 9}, {"20.25", 20.25}}};
+  const Table table{"x",
+                    "Times",
+                    {{"name"}, {"share", true}, {"p", true}, {"time", true, {"", " from", " to"}}},
+                    {{"a", {"98.2 %", 0.9821}, {"< 0.0001", 1e-9}, spread},
+                     {"b", {"100 %", 1}, {"1,234.5", 1234.5}, "–"},
+                     {"c", "–", {"-2e-05", -2e-5}, "–"}}};
+  EXPECT_EQ(csv_text(number_grid(table)),
+            "name,share,p,time,time from,time to\r\n"
+            "a,0.9821,1e-09,12.5,9,20.25\r\n"
+            "b,1,1234.5,,,\r\n"
+            "c,,-2e-05,,,\r\n");
+  const string text = latex_text(table);
+  EXPECT_NE(text.find("{lS[table-format=3.1]S[table-format=-4.1e-2]S[table-format=2.1]"
+                      "S[table-format=1.0]S[table-format=2.2]}"),
+            string::npos)
+      << text;
+  EXPECT_NE(text.find("name & {share, \\%} & {p} & {time} & {time from} & {time to} \\\\\n"),
+            string::npos);
+  EXPECT_NE(text.find("a & 98.2 & {\\textless{} 0.0001} & 12.5 & 9 & 20.25 \\\\\n"), string::npos);
+  EXPECT_NE(text.find("b & 100 & 1234.5 & {–} & {–} & {–} \\\\\n"), string::npos);
+  EXPECT_NE(text.find("c & {–} & -2e-05 & {–} & {–} & {–} \\\\\n"), string::npos);
 }
 
 TEST(ReportAxis, TicksLieWithin) {

@@ -229,10 +229,22 @@ class Tables(StudyCase):
         success = tables["success"]
         self.assertEqual(success.pipeline.tolist(), ["fine", "coarse"])
         self.assertEqual((success.runs.tolist(), success.runs.dtype.kind), ([3, 3], "i"))
-        self.assertEqual(success.share.tolist(), [0.667, 0.667])
+        self.assertEqual(success.share.tolist(), [2 / 3, 2 / 3])
         self.assertTrue((success["interval from"] < success.share).all() and (success.share < success["interval to"]).all())
+        self.assertEqual(success["of valid problems"].tolist(), [1, 1])
+        self.assertLess(success["their interval from"].max(), 1)
         verdict = tables["verdicts"].iloc[0]
         self.assertEqual((verdict.claim, verdict.claimed), ("shorter", "<= 1"))
+        texts = {"metric", "pipeline", "against", "better", "other outcomes", "scenario", "claim", "that",
+                 "claimed", "verdict", "stated"}
+        for name, table in tables.items():
+            for column in set(table.columns) - texts:
+                if "solved" not in column or name != "scenarios":  # "1/1"
+                    self.assertIn(table[column].dtype.kind, "if", (name, column))
+        lengths = tables["metrics"].set_index(["metric", "pipeline"]).loc["Length, m"]
+        runs = self.study.runs()
+        for name, values in runs[runs.solved].groupby("pipeline").length_m:
+            self.assertAlmostEqual(lengths.loc[name, "median"], values.median(), delta=1e-8)
         self.assertEqual(len(tables["scenarios"]), 3)
         self.assertEqual(self.study.figures()["success"].share.round(3).tolist(), [0.667, 0.667])
 

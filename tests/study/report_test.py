@@ -4,6 +4,7 @@ looked at by tests/viewer/report_test.py."""
 import csv
 import html
 import os
+import shutil
 import sys
 import unittest
 
@@ -57,12 +58,35 @@ class Report(StudyCase):
                                   "--no-times")
         self.assertEqual(set(with_traces) - set(without),
                          {"figures/convergence-octile.csv", "figures/convergence-octile.svg",
-                          "tables/convergence.md", "tables/convergence.tex"})
+                          "tables/convergence.csv", "tables/convergence.md", "tables/convergence.tex"})
         rows = list(csv.DictReader(with_traces["figures/convergence-octile.csv"].decode()
                                    .splitlines()))
         self.assertEqual([float(rows[-1][f"best_{part}"]) for part in ("p10", "median", "p90")],
                          [1, 1, 1])
         self.assertGreater(len(rows), 6)
+
+    def test_figures_as_pdf(self):
+        store = self.store("study.db", "--sample", "0.4")
+        self.environment = {**os.environ, "PATH": self.folder}
+        self.assertIn("--pdf: needs the program rsvg-convert, which is not on the PATH; in Debian and Ubuntu it is in "
+                      "the package librsvg2-bin", self.refused("report", store, "-o", self.path("none"), "--pdf"))
+        self.assertFalse(os.path.exists(self.path("none")))
+        fails = self.write("rsvg-convert", "#!/bin/sh\necho no room >&2\nexit 1\n")
+        os.chmod(fails, 0o755)
+        said = self.refused("report", store, "-o", self.path("none"), "--pdf")
+        self.assertRegex(said, r"--pdf: '.*/rsvg-convert' failed for [a-z-]+\.svg: no room")
+        self.assertFalse(os.path.exists(self.path("none/index.html")))
+        self.environment = None
+        if shutil.which("rsvg-convert") is None:
+            self.skipTest("no rsvg-convert")
+        files = self.report("report", store, "--pdf", "--no-times")
+        drawn = {name[:-4] for name in files if name.endswith(".svg")}
+        self.assertEqual({name[:-4] for name in files if name.endswith(".pdf")}, drawn)
+        for name in drawn:
+            self.assertTrue(files[name + ".pdf"].startswith(b"%PDF-"))
+        self.assert_same(files, self.report("again", store, "--pdf", "--no-times"))
+        self.report("report", store)
+        self.assertFalse(any(name.endswith(".pdf") for name in self.files("report")), "those of before are gone")
 
     def test_rows_are_the_stores(self):
         store = self.store("study.db")

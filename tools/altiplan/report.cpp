@@ -3,7 +3,9 @@
 
 #include <cstdio>
 
+#include "altiplan/error.hpp"
 #include "commands.hpp"
+#include "host/base/program.hpp"
 #include "progress.hpp"
 #include "study/arena/arena.hpp"
 #include "study/figures/text.hpp"
@@ -19,6 +21,7 @@ struct ReportArguments {
   std::optional<std::string> arena;
   std::string title;
   bool no_times = false;
+  bool pdf = false;
   host::Overrides overrides;
 };
 
@@ -37,14 +40,27 @@ std::string command_of(const ReportArguments& arguments) {
   if (!arguments.title.empty()) {
     command += " --title " + study::report::shell(arguments.title);
   }
-  return command;
+  return command + (arguments.pdf ? " --pdf" : "");
+}
+
+std::filesystem::path pdf_converter() {
+  const auto found = host::find_on_path({"rsvg-convert"});
+  if (!found) {
+    throw Error(
+        "--pdf: needs the program rsvg-convert, which is not on the PATH; in Debian and Ubuntu it "
+        "is in the package librsvg2-bin");
+  }
+  return *found;
 }
 
 int write_page(const ReportArguments& arguments) {
   study::report::expect_report_folder(arguments.folder);
+  study::report::Options options;
+  if (arguments.pdf) {
+    options.to_pdf = pdf_converter();
+  }
   std::optional<Activity> activity("reading the runs");
   const study::report::Source source = study::report::load_source(arguments.stores);
-  study::report::Options options;
   options.title = arguments.title;
   options.command = command_of(arguments);
   options.times = !arguments.no_times;
@@ -95,6 +111,9 @@ void add_report(App& app, Action& action) {
     if (arguments.folder.empty() && !arguments.arena) {
       throw UsageError{"-o or --arena is required"};
     }
+    if (arguments.pdf && arguments.folder.empty()) {
+      throw UsageError{"--pdf: needs -o"};
+    }
   };
   auto [command, arguments] = add_command<ReportArguments>(
       app, action, "report", "write a study's results as a page with figures and tables",
@@ -110,6 +129,8 @@ void add_report(App& app, Action& action) {
       "--no-times", arguments.no_times,
       "omit times, host and other values that vary between runs, so that equal results "
       "give identical files");
+  command.add_flag("--pdf", arguments.pdf,
+                   "write the figures as PDF too; needs rsvg-convert (package librsvg2-bin)");
   add_plugin_path(command, arguments.overrides);
   set_example(command, "altiplan report study.db -o report");
 }

@@ -25,9 +25,7 @@ _FORMAT = 2
 _COLUMNS = ("run", "scenario", "pipeline", "repetition", "seed", "outcome", "message", "wall_time_s",
             "cpu_time_s", "peak_memory_mb", "key", "place", "session")
 _ROWS_AT_ONCE = 100_000
-_NONE = ("", "–")
-_INTERVAL = re.compile(r"\[(\S+(?: %)?), (\S+(?: %)?)\]")
-_WHOLE = re.compile(r"-?\d{1,3}(,\d{3})*|-?\d{1,15}")
+_WHOLE = re.compile(r"-?\d{1,15}")
 
 
 def study(file: _Path, out: _Path, *, jobs: int = 1, reuse: int = 1, sample: Optional[float] = None,
@@ -154,9 +152,8 @@ class Study:
 
     def tables(self) -> Dict[str, "pandas.DataFrame"]:
         """The tables of the report by name: `success`, `success-pairs`, `metrics`, `verdicts`,
-        `pairs-METRIC`, `scenarios`, … Their values are as the report words them; a column of numbers
-        is one of numbers, percentages become shares, and a column of intervals becomes two of
-        numbers, "COLUMN from" and "COLUMN to". Their numbers in full are in `figures`."""
+        `pairs-METRIC`, `scenarios`, … Numbers are in full, shares from 0 to 1, nan for none; a column
+        of intervals is two, "COLUMN from" and "COLUMN to"."""
         return self._frames("tables/")
 
     def figures(self) -> Dict[str, "pandas.DataFrame"]:
@@ -165,7 +162,7 @@ class Study:
         return self._frames("figures/")
 
     def _frames(self, folder: str) -> Dict[str, "pandas.DataFrame"]:
-        return {os.path.basename(name).rpartition(".")[0]: _frame(_rows_of(name, text))
+        return {os.path.basename(name).rpartition(".")[0]: _frame(list(csv.reader(text.splitlines())))
                 for name, text in self._report().items() if name.startswith(folder)}
 
     def _repr_html_(self) -> str:
@@ -181,8 +178,8 @@ class Study:
             with tempfile.TemporaryDirectory(prefix="altiplan_") as folder:
                 self.report(os.path.join(folder, "report"))
                 root = pathlib.Path(folder) / "report"
-                files = [root / "index.html", *sorted(root.glob("tables/*.md")),
-                         *sorted(root.glob("tables/*.csv")), *sorted(root.glob("figures/*.csv"))]
+                files = [root / "index.html", *sorted(root.glob("tables/*.csv")),
+                         *sorted(root.glob("figures/*.csv"))]
                 self._files = {str(file.relative_to(root)): file.read_text(encoding="utf-8")
                                for file in files}
             self._state = state
@@ -208,45 +205,19 @@ def _value(text: str) -> Any:
     return value if isinstance(value, (bool, int, float, str)) else text
 
 
-def _rows_of(name: str, text: str) -> List[List[str]]:
-    """The rows of a file of the report, column names first."""
-    if name.endswith(".csv"):
-        return list(csv.reader(text.splitlines()))
-    rows = []
-    for line in text.splitlines():
-        if line.startswith("|") and not line.startswith("|---"):
-            cells = re.split(r"(?<!\\)\|", line)[1:-1]
-            rows.append([html.unescape(re.sub(r"\\(.)", r"\1", cell.strip())) for cell in cells])
-    return rows
-
-
 def _frame(rows: List[List[str]]) -> "pandas.DataFrame":
     import pandas
 
-    columns: Dict[str, List[Any]] = {}
-    for i, name in enumerate(rows[0] if rows else []):
-        cells = [row[i] for row in rows[1:]]
-        parts = [_INTERVAL.fullmatch(cell) for cell in cells]
-        if any(parts) and all(part or cell in _NONE for part, cell in zip(parts, cells)):
-            for group, of in enumerate((" from", " to"), 1):
-                columns[name + of] = _column([part[group] if part else "" for part in parts])
-        else:
-            columns[name] = _column(cells)
-    return pandas.DataFrame(columns)
-
-
-def _number(cell: str) -> float:
-    """ValueError for a text."""
-    share = cell.endswith(" %")
-    number = float((cell[:-2] if share else cell).replace(",", ""))
-    return number / 100 if share else number
+    return pandas.DataFrame({name: _column([row[i] for row in rows[1:]])
+                             for i, name in enumerate(rows[0] if rows else [])})
 
 
 def _column(cells: List[str]) -> List[Any]:
-    """Numbers if all of them are, with nan for none; else the texts."""
+    """Numbers if all of them are, with nan for none; else the texts, without the blank that keeps
+    spreadsheets from reading a formula."""
     if all(_WHOLE.fullmatch(cell) for cell in cells):
-        return [int(cell.replace(",", "")) for cell in cells]
+        return [int(cell) for cell in cells]
     try:
-        return [float("nan") if cell in _NONE else _number(cell) for cell in cells]
+        return [float(cell or "nan") for cell in cells]
     except ValueError:
-        return list(cells)
+        return [cell[1:] if cell[:1] == " " else cell for cell in cells]

@@ -9,12 +9,19 @@ namespace altiplan::study::report {
 namespace {
 
 Cell number(double value, int digits = 4) { return {readable(value, digits), value}; }
-/// Columns by their titles; '#' before one of numbers.
+/// Columns by their titles; '#' before one of numbers, '[' of intervals, '~' of `spread`.
 std::vector<Column> columns(std::initializer_list<std::string> titles) {
   std::vector<Column> all;
   for (const std::string& title : titles) {
-    const bool is_number = title.starts_with('#');
-    all.push_back({title.substr(is_number ? 1 : 0), is_number});
+    const char kind = title[0];
+    Column column{title.substr(kind == '#' || kind == '[' || kind == '~'), true};
+    column.number = column.title != title;
+    if (kind == '[') {
+      column.parts = {" from", " to"};
+    } else if (kind == '~') {
+      column.parts = {"", " from", " to"};
+    }
+    all.push_back(std::move(column));
   }
   return all;
 }
@@ -31,29 +38,35 @@ Cell spread(const Spread& over) {
     return "–";
   }
   return {readable(over.median) + " [" + readable(over.low) + ", " + readable(over.high) + "]",
-          over.median};
+          over.median,
+          {number(over.median), number(over.low), number(over.high)}};
 }
 Cell p_value(double p) { return {p_text(p), p}; }
 Cell units(const Units& units) {
   return {counted(units.count, units.of_scenarios ? "scenario" : "repetition"),
-          double(units.count)};
+          double(units.count),
+          {count(units.count)}};
 }
 
-std::string interval_of(const std::optional<Interval>& interval, int digits = 3) {
-  return interval
-             ? "[" + readable(interval->low, digits) + ", " + readable(interval->high, digits) + "]"
-             : "–";
+Cell between(const Cell& low, const Cell& high) {
+  return {"[" + low.text + ", " + high.text + "]", kNone, {low, high}};
 }
 
-std::string share_interval_text(const MadeInterval& made) {
-  const auto& interval = made.interval;
-  return interval ? "[" + percent(interval->low) + ", " + percent(interval->high) + "]" : "–";
+Cell interval_of(const std::optional<Interval>& interval, int digits = 3) {
+  return interval ? between(number(interval->low, digits), number(interval->high, digits)) : "–";
+}
+
+Cell share(double value) { return {percent(value), value}; }
+
+Cell share_interval(const MadeInterval& made) {
+  return made.interval ? between(share(made.interval->low), share(made.interval->high)) : "–";
 }
 
 /// "18 scenarios, 4 differ": the test drops the others.
 Cell tested(const PairedEffect& effect) {
   Cell cell = units(effect.units);
   const std::size_t differ = effect.test ? effect.test->used : 0;
+  cell.parts.push_back(count(differ));
   cell.text += differ < effect.units.count ? ", " + grouped(differ) + " differ" : "";
   return cell;
 }
@@ -86,8 +99,8 @@ Table convergence_table(const Content& content) {
       "The first iteration with a best length within 1 % of the final best, and with a mean "
       "within 3 % of it; the number of a population that found a route in the last "
       "iteration: median [10th, 90th percentile] over runs, a dash if not reached",
-      columns({"pipeline", "step", "#runs", "#best within 1 %", "#mean within 3 %",
-               "#alive at the end"}),
+      columns({"pipeline", "step", "#runs", "~best within 1 %", "~mean within 3 %",
+               "~alive at the end"}),
       {}};
   for (const Convergence& each : content.convergence) {
     const auto of_population = [&](const Spread& over) {
@@ -106,15 +119,14 @@ Table anytime_table(const Content& content) {
       "Seconds to the first route, and to one within 5 % and 1 % of the least cost known of the "
       "scenario, and evaluations in the planner's own unit: median [10th, 90th percentile] over "
       "all runs, a dash if not reached by that part of them; the share of runs that come so near",
-      columns({"pipeline", "#runs", "#first route, s", "#to 5 %, s", "#evaluations", "#of the runs",
-               "#to 1 %, s", "#evaluations", "#of the runs"}),
+      columns({"pipeline", "#runs", "~first route, s", "~to 5 %, s", "~evaluations to 5 %",
+               "#runs to 5 %", "~to 1 %, s", "~evaluations to 1 %", "#runs to 1 %"}),
       {}};
   for (const Anytime& each : content.anytime) {
     std::vector<Cell> row{name(content, each.pipeline), count(each.runs),
                           spread(each.first_route_s)};
     for (const TimeTo& to : each.times_to) {
-      row.insert(row.end(),
-                 {spread(to.time_s), spread(to.evaluations), {percent(to.share), to.share}});
+      row.insert(row.end(), {spread(to.time_s), spread(to.evaluations), share(to.share)});
     }
     table.rows.push_back(std::move(row));
   }
@@ -155,7 +167,7 @@ std::string stated(const Content& content, const JudgedClaim& judged) {
 Table claim_table(const Content& content) {
   Table table{"verdicts",
               "Claims and their verdicts",
-              columns({"claim", "that", "claimed", "verdict", "#estimate", "#interval", "#p",
+              columns({"claim", "that", "claimed", "verdict", "#estimate", "[interval", "#p",
                        "#p (Holm)", "#pairs used", "#of", "stated"}),
               {}};
   for (const JudgedClaim& judged : content.claims) {
@@ -173,14 +185,13 @@ Table success_table(const Content& content) {
       "success",
       "Share of solved runs, of all and of those whose problem is valid (start and goal are "
       "free), with 95 % intervals",
-      columns({"pipeline", "#runs", "#solved", "#share", "#interval", "#of valid problems",
-               "#interval", "other outcomes"}),
+      columns({"pipeline", "#runs", "#solved", "#share", "[interval", "#of valid problems",
+               "[their interval", "other outcomes"}),
       {}};
   for (std::size_t p = 0; p < content.data.pipelines.size(); ++p) {
     const Success& success = content.analysis.success[p];
     const auto share_of = [&](std::size_t runs) {
-      const double share = runs > 0 ? double(success.solved) / double(runs) : kNone;
-      return Cell(percent(share), share);
+      return share(runs > 0 ? double(success.solved) / double(runs) : kNone);
     };
     std::string others;
     for (const auto& [outcome, runs] : success.outcomes) {
@@ -189,8 +200,8 @@ Table success_table(const Content& content) {
       }
     }
     table.rows.push_back({name(content, p), count(success.runs), count(success.solved),
-                          share_of(success.runs), share_interval_text(success.interval),
-                          share_of(success.valid), share_interval_text(success.of_valid),
+                          share_of(success.runs), share_interval(success.interval),
+                          share_of(success.valid), share_interval(success.of_valid),
                           others.empty() ? "–" : others});
   }
   return table;
@@ -231,7 +242,7 @@ Table success_comparison_table(const Content& content) {
       "if there is one scenario), Holm's correction over all rows; the difference of the shares "
       "with Tango's interval",
       columns({"pipeline", "against", "#n", "#it more often", "#the other more often", "#p",
-               "#p (Holm)", "#difference", "#95 % interval", "#runs of both", "#it alone solved",
+               "#p (Holm)", "#difference", "[95 % interval", "#runs of both", "#it alone solved",
                "#the other alone solved"}),
       {}};
   for (const SuccessComparison& comparison : content.analysis.success_comparisons) {
@@ -250,7 +261,7 @@ Table success_comparison_table(const Content& content) {
 Table metric_table(const Content& content) {
   Table table{"metrics",
               "Values of solved runs",
-              columns({"metric", "pipeline", "#runs", "#median", "#quartiles", "#mean", "#least",
+              columns({"metric", "pipeline", "#runs", "#median", "[quartiles", "#mean", "#least",
                        "#greatest"}),
               {}};
   for (const MetricAnalysis& metric : content.analysis.metrics) {
@@ -261,14 +272,12 @@ Table metric_table(const Content& content) {
       const auto shown = [&](double value) {
         return Cell(readable_value(metric.metric, value), value);
       };
-      table.rows.push_back(
-          {metric_label(metric.metric), name(content, p), count(values.size()),
-           shown(any ? sample.box->median : kNone),
-           any ? "[" + shown(sample.box->q1).text + ", " + shown(sample.box->q3).text + "]"
-               : std::string("–"),
-           shown(mean(values)),
-           shown(any ? *std::min_element(values.begin(), values.end()) : kNone),
-           shown(any ? *std::max_element(values.begin(), values.end()) : kNone)});
+      table.rows.push_back({metric_label(metric.metric), name(content, p), count(values.size()),
+                            shown(any ? sample.box->median : kNone),
+                            any ? between(shown(sample.box->q1), shown(sample.box->q3)) : "–",
+                            shown(mean(values)),
+                            shown(any ? *std::min_element(values.begin(), values.end()) : kNone),
+                            shown(any ? *std::max_element(values.begin(), values.end()) : kNone)});
     }
   }
   return table;
@@ -317,9 +326,10 @@ Table comparison_table(const Content& content, const MetricAnalysis& metric) {
           " is better): Wilcoxon's signed-rank test over n scenarios (repetitions if "
           "there is one scenario), Holm's correction over all rows",
       columns({"pipeline", "against", metric.is_ratio ? "#median ratio" : "#median difference",
-               "#95 % interval", "#n", "#p", "#p (Holm)", "#rank-biserial", "better",
+               "[95 % interval", "#n", "#p", "#p (Holm)", "#rank-biserial", "better",
                "#both solved", "#of pairs"}),
       {}};
+  table.columns[4].parts = {"", " that differ"};
   for (const Comparison& comparison : metric.comparisons) {
     const std::string sign = !metric.is_ratio && comparison.effect.median > 0 ? "+" : "";
     table.rows.push_back(

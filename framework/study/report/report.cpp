@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <set>
@@ -17,6 +19,7 @@
 #include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
+#include "host/base/program.hpp"
 #include "study/figures/text.hpp"
 #include "study/report/page.hpp"
 #include "study/store/load_study.hpp"
@@ -195,22 +198,9 @@ void write_tables(const Content& content, const fs::path& folder) {
     table.note = incomplete(content.data);
     host::write_file(folder / (table.name + ".md"), markdown_text(table));
     host::write_file(folder / (table.name + ".tex"), latex_text(table));
+    host::write_file(folder / (table.name + ".csv"), csv_text(number_grid(table)));
   }
-  const Table scenarios = scenario_table(content);
-  Grid grid;
-  for (const Column& column : scenarios.columns) {
-    grid.columns.push_back(column.title);
-  }
-  for (const auto& row : scenarios.rows) {
-    grid.rows.emplace_back();
-    for (const Cell& cell : row) {
-      // "3/4" is kept; medians have all digits.
-      const bool is_number =
-          !std::isnan(cell.sort) && cell.text.find('/') == std::string::npos && cell.text != "–";
-      grid.rows.back().push_back(is_number ? exact(cell.sort) : cell.text == "–" ? "" : cell.text);
-    }
-  }
-  host::write_file(folder / "scenarios.csv", csv_text(grid));
+  host::write_file(folder / "scenarios.csv", csv_text(number_grid(scenario_table(content))));
 }
 
 /// Unlike fs::create_directories it does not check for existence, which fails for inaccessible
@@ -226,11 +216,32 @@ void make_folder(const fs::path& folder) {
   }
 }
 
-void write_parts(const Content& content, const std::string& page, const fs::path& folder) {
+/// Embeds the fonts of this machine, and has no date.
+void write_pdf(const fs::path& to_pdf, const fs::path& svg) {
+  const host::TemporaryFolder temporary;
+  const fs::path errors = temporary.path() / "errors";
+  const host::Program converter(
+      {"/usr/bin/env", "SOURCE_DATE_EPOCH=0", to_pdf.string(), "-f", "pdf", "-o",
+       fs::path(svg).replace_extension(".pdf").string(), svg.string()},
+      {{}, errors});
+  if (converter.ended(host::Program::Clock::now() + std::chrono::minutes(1)) != 0) {
+    std::string why;
+    std::getline(std::ifstream(errors), why);
+    throw Error("--pdf: '" + to_pdf.string() + "' failed for " + svg.filename().string() +
+                (why.empty() ? "" : ": " + printable(why)));
+  }
+}
+
+void write_parts(const Content& content, const Options& options, const std::string& page,
+                 const fs::path& folder) {
   make_folder(folder / "figures");
   make_folder(folder / "tables");
   for (const Figure& figure : all_figures(content)) {
-    host::write_file(folder / "figures" / (figure.name + ".svg"), svg_text(figure, false));
+    const fs::path svg = folder / "figures" / (figure.name + ".svg");
+    host::write_file(svg, svg_text(figure, false));
+    if (!options.to_pdf.empty()) {
+      write_pdf(options.to_pdf, svg);
+    }
     host::write_file(folder / "figures" / (figure.name + ".csv"), csv_text(figure.numbers));
   }
   write_tables(content, folder / "tables");
@@ -330,7 +341,7 @@ Written write_report(const Source& source, const Options& options, const fs::pat
     fs::remove(beside.parent_path(), error);
   });
   try {
-    write_parts(content, page, beside);
+    write_parts(content, options, page, beside);
     put_in_place(beside, folder);
   } catch (const fs::filesystem_error& error) {
     throw Error("-o: cannot write into '" + folder.string() + "': " + error.code().message());

@@ -21,10 +21,11 @@ struct Source {
 };
 
 struct Options {
-  std::string title;    ///< "": the study's name
-  std::string command;  ///< the command line
-  bool times = true;    ///< false: no values that vary between equal runs
-  SceneOptions scenes;  ///< `times` of it follows the one above
+  std::string title;                  ///< "": the study's name
+  std::string command;                ///< the command line
+  bool times = true;                  ///< false: no values that vary between equal runs
+  std::filesystem::path to_pdf = {};  ///< rsvg-convert, to write figures as PDF too; "" for none
+  SceneOptions scenes;                ///< `times` of it follows the one above
   /// Called with what is done next: "building scene 3 of 48".
   std::function<void(const std::string&)> begins = [](const std::string&) {};
 };
@@ -47,7 +48,8 @@ struct Written {
 void expect_report_folder(const std::filesystem::path& folder);
 
 /// Writes index.html, runs.csv, figures/ and tables/ (docs/report.md) into the folder, replacing
-/// those of an earlier report. The same data give the same bytes.
+/// those of an earlier report. The same data give the same bytes. Throws Error if a figure cannot
+/// be written as PDF.
 Written write_report(const Source& source, const Options& options,
                      const std::filesystem::path& folder);
 }  // namespace altiplan::study::report
