@@ -91,7 +91,7 @@ def problem(kind, name):
     with_ = PARAMETERS.get(name, "{}")
     layers = "{%s: %s}" % (name, with_) if kind == "environment" else BALL
     planner = name if kind in ("planner", "local_planner") else "astar"
-    if kind == "objective" and name in ("spso", "nmopso"):
+    if kind == "objective" and name in ("spso", "nmopso", "curvature", "cusps"):
         planner = "pso"  # of whole routes
     steps = "  - {plan: %s, with: %s, within_s: 5}\n" % (planner, PARAMETERS.get(planner, "{}"))
     if kind == "smoother":
