@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""arena_test.py PROGRAM: the database of `altiplan report --arena`, queried as Planner Arena does."""
+"""arena_test.py PROGRAM: the database of `altiplan report --arena`, queried as Planner Arena does, and those of
+OMPL, read."""
 import csv
 import os
 import re
@@ -191,6 +192,117 @@ class Arena(StudyCase):
                 self.assertIn(words, why)
         self.assertEqual(self.rows(self.path("arena.db"), "SELECT * FROM runs"), before)
         self.assertIn("--arena", self.write_arena(3, store, out="no/arena.db"))
+
+
+OMPL = """
+CREATE TABLE experiments(id INTEGER PRIMARY KEY, name VARCHAR(512), totaltime REAL, timelimit REAL, memorylimit REAL,
+  runcount INTEGER, version VARCHAR(128), hostname VARCHAR(1024), cpuinfo TEXT, date DATETIME, seed VARCHAR(24), setup TEXT);
+CREATE TABLE plannerConfigs(id INTEGER PRIMARY KEY, name VARCHAR(512), settings TEXT);
+CREATE TABLE enums(name VARCHAR(512), value INTEGER, description TEXT, PRIMARY KEY (name, value));
+CREATE TABLE runs(id INTEGER PRIMARY KEY, experimentid INTEGER, plannerid INTEGER, approximate_solution BOOLEAN,
+  correct_solution BOOLEAN, solution_length REAL, solution_segments INTEGER, solved BOOLEAN, status ENUM, time REAL,
+  best_cost REAL, note VARCHAR(99));
+CREATE TABLE progress(runid INTEGER, time REAL, iterations INTEGER, best_cost REAL, PRIMARY KEY (runid, time));
+INSERT INTO experiments VALUES(7, 'city[seed=1]', 9, 20, 900, 4, 'OMPL 1.5.2', 'there', 'cpu', '2023-11-05 03:54:37', '42', '');
+INSERT INTO plannerConfigs VALUES(1, 'geometric_RRT', 'range = 1'), (2, 'geometric_RRT', 'range = 2'), (3, 'geometric_RRTstar', '');
+INSERT INTO enums VALUES('status', 1, 'Invalid start'), ('status', 4, 'Timeout'), ('status', 5, 'Approximate solution'),
+  ('status', 6, 'Exact solution');
+INSERT INTO runs VALUES
+  (1, 7, 1, 0, 1, 900.5, 4, 1, 6, 0.5, NULL, 'x'), (2, 7, 1, 1, 1, 800, 3, 1, 5, 20, NULL, 'x'),
+  (3, 7, 2, 0, 0, 700, 3, 1, 6, 1, NULL, 'x'), (4, 7, 2, 0, 0, NULL, NULL, 0, 4, 20, NULL, 'x'),
+  (5, 7, 2, 0, 0, NULL, NULL, 0, 1, 0, NULL, 'x'), (6, 7, 3, 0, 1, 850, 9, 1, 6, 20, 850, 'x');
+INSERT INTO progress VALUES(6, 1, 100, NULL), (6, 2, 200, 950), (6, 3, 300, 850), (1, 0.2, 7, NULL);
+"""
+
+
+class Benchmarks(StudyCase):
+    """Databases of OMPL, read by `altiplan report`."""
+
+    def benchmark(self, sql="", name="ompl.db"):
+        database = sqlite3.connect(self.path(name))
+        database.executescript(OMPL + sql)
+        database.close()
+        return self.path(name)
+
+    def reported(self, *files):
+        self.call("report", *files, "-o", self.path("page"))
+        with open(self.path("page/runs.csv"), newline="") as stream:
+            return list(csv.DictReader(stream))
+
+    def refused_report(self, *files):
+        return self.refused("report", *files, "-o", self.path("none"))
+
+    def test_alone(self):
+        rows = self.reported(self.benchmark())
+        self.assertEqual([(row["pipeline"], row["repetition"], row["outcome"], row["message"]) for row in rows],
+                         [("geometric_RRT", "0", "solved", ""),
+                          ("geometric_RRT", "1", "no_route", "Approximate solution"),
+                          ("geometric_RRT (2)", "0", "rejected", "Invalid solution"),
+                          ("geometric_RRT (2)", "1", "timed_out", "Timeout"),
+                          ("geometric_RRT (2)", "2", "invalid_problem", "Invalid start"),
+                          ("geometric_RRTstar", "0", "solved", "")])
+        self.assertEqual({row["seed"] for row in rows}, {"42"})
+        self.assertEqual((rows[0]["length_m"], rows[0]["waypoints"], rows[0]["plan_time_s"], rows[0]["cost"]),
+                         ("900.5", "5", "0.5", "900.5"))
+        self.assertNotIn("note", rows[0])
+        with open(self.path("page/tables/anytime.csv"), newline="") as stream:
+            times = {row["pipeline"]: row for row in csv.DictReader(stream)}
+        self.assertEqual([times["geometric_RRTstar"][name] for name in
+                          ("first route, s", "to 5 %, s", "evaluations to 5 %")], ["2", "3", "300"])
+        self.assertEqual([times["geometric_RRT"][name] for name in ("runs", "first route, s", "runs to 5 %")],
+                         ["2", "", "0"], "one of two has a route")
+        with open(self.path("page/figures/anytime-time.csv"), newline="") as stream:
+            shares = {row["pipeline"]: float(row["with_a_route"]) for row in csv.DictReader(stream)}
+        self.assertEqual(shares["geometric_RRT"], 0.5, "its progress has no costs: it has a route when it ends")
+
+    def test_costs_that_are_no_lengths_are_not_mixed(self):
+        rows = self.reported(self.benchmark("UPDATE runs SET best_cost = 3 WHERE id = 6;"))
+        self.assertEqual([row["cost"] for row in rows], ["", "", "", "", "", "3"])
+
+    def test_beside_a_study(self):
+        rows = self.reported(self.store("study.db", "--filter", "seed=1"), self.benchmark())
+        self.assertEqual({row["scenario"] for row in rows}, {"city[seed=1]"})
+        self.assertEqual({row["pipeline"] for row in rows},
+                         {"octile", "greedy", "geometric_RRT", "geometric_RRT (2)", "geometric_RRTstar"})
+        with open(self.path("page/tables/pairs-length_m.csv"), newline="") as stream:
+            pairs = [row for row in csv.DictReader(stream)
+                     if {row["pipeline"], row["against"]} == {"octile", "geometric_RRT"}]
+        self.assertEqual([row["both solved"] for row in pairs], ["1"])
+
+    def test_what_is_exported_is_read_again(self):
+        store = self.store("study.db")
+        before = self.reported(store)
+        self.call("report", store, "--arena", self.path("arena.db"))
+        again = self.reported(self.path("arena.db"))
+        for name in ("pipeline", "outcome", "length_m", "plan_time_s", "expanded", "waypoints", "min_clearance_m"):
+            self.assertEqual(sorted(row[name] for row in again), sorted(row[name] for row in before), name)
+        self.assertEqual(len({row["scenario"] for row in again}), 3)
+
+    def test_refused(self):
+        store = self.store("study.db", "--filter", "seed=2")
+        why = self.refused_report(store, self.benchmark("UPDATE experiments SET name = 'Car';"))
+        self.assertIn("none of its experiments has the name of a scenario of the study; the first is 'Car'", why)
+        self.assertIn("run 1 is of no experiment or planner",
+                      self.refused_report(self.benchmark("DELETE FROM plannerConfigs WHERE id = 1;", "b.db")))
+        self.assertIn("it has no runs", self.refused_report(self.benchmark("DELETE FROM runs;", "c.db")))
+        self.assertIn("'time' is 'soon', expected a number",
+                      self.refused_report(self.benchmark("UPDATE runs SET time = 'soon';", "d.db")))
+        self.assertIn("no columns 'solved' and 'time'", self.refused_report(
+            self.benchmark("ALTER TABLE runs RENAME COLUMN time TO when_;", "e.db")))
+
+    def test_files_of_others(self):
+        folder = os.path.join(os.environ.get("ALTIPLAN_TEST_DATA", ""), "benchmark")
+        if not os.path.isdir(folder):
+            self.skipTest("no test data")
+        rows = self.reported(os.path.join(folder, "ompl_car_1.5.2.db"))
+        solved = {name: sum(row["outcome"] == "solved" for row in rows if row["pipeline"] == name)
+                  for name in ("control_RGRRT", "control_RRT", "control_KPIECE1")}
+        self.assertEqual((len(rows), solved), (60, {"control_RGRRT": 20, "control_RRT": 19, "control_KPIECE1": 3}))
+        rows = self.reported(os.path.join(folder, "ompl_progress.db"))
+        self.assertEqual(len(rows), 80)
+        self.assertTrue(os.path.exists(self.path("page/figures/anytime-time.svg")))
+        self.assertIn("no columns 'solved' and 'time'",
+                      self.refused_report(os.path.join(folder, "ompl_empty_schema.db")))
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@
 #include "host/base/program.hpp"
 #include "progress.hpp"
 #include "study/arena/arena.hpp"
+#include "study/arena/arena_reading.hpp"
 #include "study/figures/text.hpp"
 #include "study/store/load_study.hpp"
 #include "study/store/place.hpp"
@@ -53,6 +54,33 @@ std::filesystem::path pdf_converter() {
   return *found;
 }
 
+/// The runs of a study, and those of benchmarks of OMPL beside them.
+study::report::Source load(const std::vector<std::string>& files) {
+  std::vector<std::string> stores;
+  std::vector<std::string> arenas;
+  for (const std::string& file : files) {
+    (study::is_arena(file) ? arenas : stores).push_back(file);
+  }
+  study::report::Source source;
+  if (!stores.empty() || arenas.empty()) {
+    source = study::report::load_source(stores);
+  } else {
+    source.study_text = "# runs of another program\n";
+    source.results = [](const study::RunRow&) { return std::string(); };
+  }
+  for (const std::string& file : arenas) {
+    const std::size_t store = source.data.stores.size();
+    const auto traces = study::add_arena(source.data, file);
+    source.results = [store, others = source.results](const study::RunRow& row) {
+      return row.store == store ? std::string() : others(row);
+    };
+    source.traces = [store, traces, others = source.traces](const study::RunRow& row) {
+      return row.store == store ? traces(row) : others(row);
+    };
+  }
+  return source;
+}
+
 int write_page(const ReportArguments& arguments) {
   study::report::expect_report_folder(arguments.folder);
   study::report::Options options;
@@ -60,7 +88,7 @@ int write_page(const ReportArguments& arguments) {
     options.to_pdf = pdf_converter();
   }
   std::optional<Activity> activity("reading the runs");
-  const study::report::Source source = study::report::load_source(arguments.stores);
+  const study::report::Source source = load(arguments.stores);
   options.title = arguments.title;
   options.command = command_of(arguments);
   options.times = !arguments.no_times;
@@ -118,7 +146,10 @@ void add_report(App& app, Action& action) {
   auto [command, arguments] = add_command<ReportArguments>(
       app, action, "report", "write a study's results as a page with figures and tables",
       write_report, prepare);
-  command.add_option("stores DB", arguments.stores, "study databases; all shards of one study")
+  command
+      .add_option(
+          "stores DB", arguments.stores,
+          "study databases: all shards of one study; OMPL benchmark databases (Planner Arena)")
       ->required();
   command.add_option("-o,--out DIR", arguments.folder,
                      "report folder: a new folder, or that of an earlier report");

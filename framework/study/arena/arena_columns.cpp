@@ -79,7 +79,9 @@ std::string ColumnNames::add(std::string_view name) {
   return column;
 }
 
-std::vector<ArenaColumn> arena_columns(const StudyData& data, ColumnNames& names) {
+namespace {
+/// OMPL's columns, each with the value of ours that means the same.
+const std::vector<std::pair<ArenaColumn, const char*>>& ompl_columns() {
   static const std::vector<std::pair<ArenaColumn, const char*>> kOmpl{
       {{"approximate_solution", "BOOLEAN"}, ""},
       {{"correct_solution", "BOOLEAN"}, ""},
@@ -92,9 +94,24 @@ std::vector<ArenaColumn> arena_columns(const StudyData& data, ColumnNames& names
       {{"solved", "BOOLEAN"}, "solved"},
       {{"status", "ENUM"}, ""},
       {{"time", "REAL"}, "plan_time_s"}};
+  return kOmpl;
+}
+}  // namespace
+
+std::string value_of_column(const std::string& column) {
+  for (const auto& [ompl, ours] : ompl_columns()) {
+    // OMPL's smoothness is another sum than ours.
+    if (ompl.name == column && *ours != '\0' && column != "solution_smoothness") {
+      return ours;
+    }
+  }
+  return column;
+}
+
+std::vector<ArenaColumn> arena_columns(const StudyData& data, ColumnNames& names) {
   std::vector<ArenaColumn> columns;
   std::set<std::string> done;
-  for (const auto& [column, ours] : kOmpl) {
+  for (const auto& [column, ours] : ompl_columns()) {
     columns.push_back({names.add(column.name), column.type, data.column(ours)});
     done.insert(ours);
   }

@@ -29,6 +29,8 @@ struct ArenaColumn {
   const char* type;       ///< as OMPL declares it
   std::size_t value = 0;  ///< index into StudyData::columns; columns.size() if no run has it
 };
+/// The value of runs that a column of OMPL's has, or the column's own name.
+std::string value_of_column(const std::string& column);
 /// OMPL's first, then all other values of the study.
 std::vector<ArenaColumn> arena_columns(const StudyData& data, ColumnNames& names);
 
