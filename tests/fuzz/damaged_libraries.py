@@ -18,6 +18,7 @@ import random
 import re
 import resource
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -38,6 +39,7 @@ PARAMETERS = {
     "city": "{generate: simple, seed: 1, cells: [20, 20, 20], cell_m: 5}",
     "grid_map": "{file: cells.map, cell_m: 10, height_m: 100}",
     "gazebo": "{file: cylinder.world}",
+    "mat_terrain": "{file: ground.mat}",
     "mesh": "{file: cube.obj}",
     "octomap": "{file: voxel.bt, unknown: free}",
     "voxel_map": "{file: voxels.3dmap, cell_m: 10}",
@@ -73,7 +75,26 @@ CUBE = "".join("v %d %d %d\n" % (40 + 20 * (n & 1), 40 + 20 * (n >> 1 & 1), 40 +
 # One occupied voxel, the first from the origin.
 VOXEL = (b"# Octomap OcTree binary file\nid OcTree\nsize 17\nres 10\ndata\n" + b"\x00\xc0" +
          14 * b"\x03\x00" + b"\x02\x00")
+
+
+def element(kind, data):
+    return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+
+def array(kind, rows, columns, name, content):
+    return element(14, element(6, struct.pack("<II", kind, 0)) + element(5, struct.pack("<ii", rows, columns)) +
+                   element(1, name) + content)
+
+
+def numbers(rows, columns, *values):
+    return array(6, rows, columns, b"", element(9, struct.pack("<%dd" % len(values), *values)))
+
+
+MAT = b"MATLAB 5.0 MAT-file".ljust(124) + b"\0\1IM" + array(
+    2, 1, 1, b"terrainStruct", element(5, struct.pack("<i", 2)) + element(1, b"X\0Y\0H\0") +
+    numbers(1, 2, 0, 100) + numbers(2, 1, 0, 100) + numbers(2, 2, 1, 2, 3, 4))
 FILES = {
+    "ground.mat": MAT,
     "ground.asc": b"ncols 4\nnrows 4\nxllcorner 8\nyllcorner 47\ncellsize 0.001\n" + 4 * b"1 2 3 4\n",
     "risk.asc": b"ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 40\n" + 3 * b"1 2 3\n",
     "cells.map": b"type octile\nheight 10\nwidth 10\nmap\n" + 5 * b"..........\n...@@@....\n",

@@ -100,6 +100,27 @@ class Sets(StudyCase):
         for row in runs:
             self.assertAlmostEqual(float(row["length_m"]), float(row["reference"]), delta=1e-5)
 
+    def test_mat_files(self):
+        file = SOURCES / "plugins" / "environment" / "mat_terrain" / "conformance.mat"
+        os.mkdir(self.path("moea"))
+        for name in ("terrainStruct_m_2.mat", "terrainStruct_c_1.mat"):
+            shutil.copy(file, self.path("moea/" + name))
+        self.write("moea.yaml", "altiplan: 1\nenvironment: [{mat_terrain: {file: moea/terrainStruct_c_1.mat}}]\n"
+                   "volume: {min_m: [0, 0, 0], max_m: [600, 600, 300]}\n"
+                   "vehicle: {radius_m: 0}\nstart: {at_m: [0, 0, 50]}\ngoal: {at_m: [600, 600, 50]}\n")
+        self.write("study.yaml", STUDY.replace("cells.yaml", "rrt.yaml") % "{file: moea.yaml, from: moea}")
+        self.write("rrt.yaml", "altiplan: 1\nscenario: moea.yaml\nsteps: [{plan: rrt_connect}]\n")
+        self.call("study", self.path("study.yaml"), "--out", self.path("s.db"))
+        rows = self.rows(self.path("s.db"), "SELECT scenarios.name, outcome, overrides FROM runs "
+                         "JOIN scenarios ON scenarios.id = scenario ORDER BY scenario")
+        self.assertEqual([row[:2] for row in rows], [("moea[map=c_1]", "solved"), ("moea[map=m_2]", "solved")])
+        self.assertIn("start.at_m=[0.0,0.0,40.", rows[0][2].replace(" ", ""), "raised to the ground")
+        self.assertIn("goal.at_m=[600.0,600.0,100.0]", rows[0][2].replace(" ", ""))
+        with open(self.path("moea/terrainStruct_c_1.mat"), "r+b") as stream:
+            stream.truncate(400)
+        self.assertIn("terrainStruct_c_1.mat: it is damaged", self.refused(
+            "study", self.path("study.yaml"), "--out", self.path("t.db")))
+
     def barn(self):
         folder = pathlib.Path(self.path("barn"))
         (folder / "path_files").mkdir(parents=True)
@@ -137,7 +158,7 @@ class Sets(StudyCase):
                  "sets 'start.at_cell', which each scenario of 'from' does"),
                 ("a.map", "type octile\n", GRID % "", "a.map: expected a map, which begins with its size"),
                 ("b.scen", SCEN, "{file: grid.yaml, from: b.scen}", "expected a name such as arena.map.scen"),
-                ("b.txt", SCEN, "{file: grid.yaml, from: b.txt}", "b.txt: expected a .scen or .3dscen file"),
+                ("b.txt", SCEN, "{file: grid.yaml, from: b.txt}", "b.txt: expected a .scen, .3dscen or .mat file"),
                 ("b.txt", "", "{file: grid.yaml, from: missing.map.scen}", "missing.map: there is no such file"),
                 ("b.txt", "", "{file: grid.yaml, every: 2}", "every is of a set"),
                 ("b.txt", "", "{file: barn.yaml, from: barn/path_files}", "expected worlds of BARN")):

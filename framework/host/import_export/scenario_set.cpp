@@ -11,6 +11,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/formats/input_file.hpp"
+#include "altiplan/formats/mat_file.hpp"
 #include "host/base/json.hpp"
 #include "host/import_export/grid_scenarios.hpp"
 
@@ -112,7 +113,8 @@ std::vector<SetScenario> read_barn(const fs::path& folder) {
     }
   }
   if (worlds.empty()) {
-    throw Error(folder.string() + ": expected worlds of BARN (world_0.world …), found none");
+    throw Error(folder.string() +
+                ": expected worlds of BARN (world_0.world …) or terrainStruct_….mat, found none");
   }
   std::vector<SetScenario> set;
   for (const auto& [number, world] : worlds) {
@@ -128,15 +130,71 @@ std::vector<SetScenario> read_barn(const fs::path& folder) {
   }
   return set;
 }
+constexpr const char* kMatPrefix = "terrainStruct_";
+
+/// A scenario of the MOEA benchmark. Its program puts the start on the ground, and an end below the
+/// ground cannot be reached.
+SetScenario read_mat(const fs::path& file) {
+  const auto fields = formats::read_mat_structure(file.string(), "terrainStruct");
+  const auto numbers = [&](const char* name, std::size_t count) -> const std::vector<double>& {
+    const auto found = fields.find(name);
+    if (found == fields.end() || found->second.values.size() < count) {
+      refuse(file, std::string("expected numbers '") + name + "' in terrainStruct");
+    }
+    return found->second.values;
+  };
+  const std::vector<double>& x = numbers("X", 2);
+  const std::vector<double>& y = numbers("Y", 2);
+  const std::vector<double>& heights = numbers("H", x.size() * y.size());
+  const auto end = [&](const char* name) {
+    std::vector<double> at = numbers(name, 3);
+    const double column = (at[0] - x[0]) / (x[1] - x[0]);
+    const double row = (at[1] - y[0]) / (y[1] - y[0]);
+    if (!(column >= 0 && column < double(x.size()) && row >= 0 && row < double(y.size())) ||
+        column != std::floor(column) || row != std::floor(row)) {
+      refuse(file, std::string("'") + name + "' is not over a post");
+    }
+    const float ground = float(heights[std::size_t(column) * y.size() + std::size_t(row)]);
+    at[2] = std::max(at[2], double(ground));
+    return exact_json_text(Json{at[0], at[1], at[2]});
+  };
+  const std::string stem = file.stem().string();
+  return {"map=" + (stem.starts_with(kMatPrefix) ? stem.substr(14) : stem),
+          {{"environment.0.mat_terrain.file", exact_json_text(file.string())},
+           {"start.at_m", end("start")},
+           {"goal.at_m", end("end")}}};
+}
+
+/// By name; none if the folder has no such files.
+std::vector<SetScenario> read_mats(const fs::path& folder) {
+  std::map<std::string, SetScenario> set;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kMatPrefix) && name.ends_with(".mat")) {
+      set.emplace(name, read_mat(entry.path()));
+    }
+  }
+  std::vector<SetScenario> all;
+  for (auto& [name, scenario] : set) {
+    all.push_back(std::move(scenario));
+  }
+  return all;
+}
 }  // namespace
 
 std::vector<SetScenario> read_scenario_set(const fs::path& set) {
   if (fs::is_directory(set)) {
-    return read_barn(set);
+    std::vector<SetScenario> mats = read_mats(set);
+    return mats.empty() ? read_barn(set) : mats;
+  }
+  if (set.extension() == ".mat") {
+    return {read_mat(set)};
   }
   if (set.extension() == ".scen" || set.extension() == ".3dscen") {
     return read_grid_set(set);
   }
-  throw Error(set.string() + ": expected a .scen or .3dscen file, or the folder of BARN's worlds");
+  throw Error(set.string() +
+              ": expected a .scen, .3dscen or .mat file, or the folder of BARN's worlds or of "
+              "terrainStruct_….mat");
 }
 }  // namespace altiplan::host

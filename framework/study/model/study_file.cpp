@@ -10,8 +10,8 @@ void ScenarioChoice::describe(Fields& f) {
   f("file", file).required().doc("a scenario");
   f("from", from)
       .doc(
-          "a published set that gives the scenario its ends, map and reference: a .scen or .3dscen "
-          "file, or the folder of BARN's worlds");
+          "a published set that gives the scenario its ends, map and reference: a .scen, .3dscen "
+          "or .mat file, or the folder of BARN's worlds or of MAT-files");
   f("every", every).range(1, 1e6).doc("of the set the first scenario, and each so many after it");
   f.check(from || every == 1, "every is of a set: expected from, or no every");
   f("set", set).doc("keys of the scenario over their values: one, a list of them, or FROM..TO");
