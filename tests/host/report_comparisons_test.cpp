@@ -29,6 +29,42 @@ TEST(ReportComparisons, ComparesOnThePairsThatBothSolved) {
   EXPECT_EQ(analysis.success_comparisons.front().test.second_more, 1u);
 }
 
+TEST(ReportComparisons, EqualRepetitionsCountOnceInEveryNumber) {
+  StudyData data = study(3, 20, 2);
+  for (RunRow& row : data.rows) {
+    row.values[1] = 1000.0 + 10 * double(row.scenario) + double(row.pipeline);
+    row.values[3] = 0.1 + row.repetition;
+    row.outcome = row.scenario < 2 ? "no_path" : "solved";
+  }
+  const Analysis analysis = analyse(in_order(data, true), true);
+  const MetricAnalysis& length = analysis.metrics.at(0);
+  EXPECT_EQ(length.comparisons.front().used, 18u);
+  EXPECT_EQ(length.comparisons.front().pairs, 20u);
+  EXPECT_EQ(length.samples.front().values.size(), 18u);
+  const MetricAnalysis& time = analysis.metrics.at(1);
+  ASSERT_EQ(time.metric, "plan_time_s");
+  EXPECT_EQ(time.comparisons.front().used, 36u) << "times are measured in each repetition";
+  EXPECT_EQ(time.comparisons.front().pairs, 40u);
+  EXPECT_EQ(time.samples.front().values.size(), 36u);
+  EXPECT_EQ(analysis.success_comparisons.front().pairs, 20u);
+  const auto files = written(data, true);
+  const std::string& table = files.at("tables/pairs-length_m.md");
+  EXPECT_NE(table.find("| 18 | 20 |"), std::string::npos) << table;
+  EXPECT_NE(table.find("equal repetitions count once"), std::string::npos) << table;
+  const std::string& common = files.at("tables/common.md");
+  EXPECT_NE(common.find("| Length, m | p0 | 18 |"), std::string::npos) << common;
+  EXPECT_NE(files.at("figures/boxes-length_m.svg").find("n = 18<"), std::string::npos);
+  EXPECT_EQ(files.at("figures/boxes-plan_time_s.svg").find("count once"), std::string::npos);
+}
+
+TEST(ReportComparisons, EqualRepetitionsOfOneScenarioAreNoRanking) {
+  StudyData data = study(3, 1, 5);
+  for (RunRow& row : data.rows) {
+    row.values[1] = 1000.0 + double(row.pipeline);
+  }
+  EXPECT_FALSE(analyse(in_order(data, true), true).metrics.front().ranking);
+}
+
 TEST(ReportComparisons, RatiosOrDifferencesOfAMetricAlike) {
   StudyData data = study(3, 8);
   EXPECT_TRUE(analyse(in_order(data, true), true).metrics.front().is_ratio);
@@ -121,6 +157,19 @@ TEST(ReportComparisons, AVerdictSaysNothingTwice) {
   EXPECT_NE(written(data).at("index.html").find("its claim fails"), std::string::npos);
 }
 
+TEST(ReportComparisons, TheHeadlineSaysWhichVerdictsHolmTakes) {
+  StudyData data = study(2, 6);  // p = 2 / 2^6 of each, 0.0625 of two
+  data.file.claims = {{"one", "median(p1.length_m / p0.length_m)", "> 1", 0.95}};
+  EXPECT_NE(written(data).at("index.html").find("its claim holds;"), std::string::npos);
+  data.file.claims.push_back({"two", "median(p1.length_m - p0.length_m)", "> 0", 0.95});
+  data.file.claims.push_back({"three", "median(p1.length_m - p0.length_m)", "0.5..1.5", 0.9999});
+  const std::string page = written(data).at("index.html");
+  EXPECT_NE(
+      page.find("2 of 3 claims hold, 1 undecided (with Holm&#39;s correction 2 of these become "
+                "undecided);"),
+      std::string::npos);
+}
+
 TEST(ReportComparisons, AMetricIsComparedOnce) {
   StudyData data = study(2, 4);
   for (const char* name : {"length_m", "expanded", "length_m", "no_such_m", "plan_time_s"}) {
@@ -132,6 +181,11 @@ TEST(ReportComparisons, AMetricIsComparedOnce) {
             (std::vector<std::string>{
                 "length_m is listed twice.", "no_such_m is not compared: no run has this value.",
                 "plan_time_s is not compared: it varies between equal runs."}));
+  const auto files = written(data);
+  EXPECT_NE(
+      files.at("index.html").find("No run has a value &#39;no_such_m&#39;, a metric of the study."),
+      std::string::npos);
+  EXPECT_EQ(files.at("index.html").find("No run has a value &#39;plan_time_s"), std::string::npos);
 }
 
 TEST(ReportComparisons, AScenarioCountsOnceInTests) {

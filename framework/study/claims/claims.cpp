@@ -205,6 +205,11 @@ void adjust(std::vector<JudgedClaim>& claims) {
   }
 }
 
+bool becomes_undecided(const JudgedClaim& judged) {
+  const bool is_decided = judged.verdict == Verdict::holds || judged.verdict == Verdict::fails;
+  return is_decided && !std::isnan(judged.p) && judged.p_holm > 1 - judged.claim.confidence;
+}
+
 std::string multiplicity(const std::vector<JudgedClaim>& claims) {
   std::size_t tested = 0;
   std::size_t decided = 0;
@@ -214,7 +219,7 @@ std::string multiplicity(const std::vector<JudgedClaim>& claims) {
     const bool is_decided = !std::isnan(judged.p) &&
                             (judged.verdict == Verdict::holds || judged.verdict == Verdict::fails);
     decided += is_decided ? 1 : 0;
-    if (is_decided && judged.p_holm > 1 - judged.claim.confidence) {
+    if (becomes_undecided(judged)) {
       lost += (lost.empty() ? "" : ", ") + judged.claim.id + " (p " +
               host::with_digits(judged.p, 2) + ", adjusted " + host::with_digits(judged.p_holm, 2) +
               ")";

@@ -53,6 +53,8 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim);
 
 /// All claims of the study, with `p` and `p_holm`.
 std::vector<JudgedClaim> judge_claims(const StudyData& data);
+/// True if it holds or fails by its own interval, but not with Holm's correction.
+bool becomes_undecided(const JudgedClaim& judged);
 /// A sentence on what Holm's correction leaves of the verdicts of several claims; "" of fewer.
 std::string multiplicity(const std::vector<JudgedClaim>& claims);
 /// Fills in `p_holm`.

@@ -99,7 +99,8 @@ class MetricAnalyser {
   MetricAnalyser(const StudyData& data, const std::vector<Pair>& pairs, const std::string& metric)
       : data_(data),
         pairs_(pairs),
-        repeat_(repeat_themselves(data)),
+        repeat_(is_measured(metric) ? std::vector<bool>(data.pipelines.size())
+                                    : repeat_themselves(data)),
         column_(data.column(metric)),
         is_of_every_run_(is_of_every_run(metric)) {
     analysis_.metric = metric;
@@ -136,7 +137,13 @@ class MetricAnalyser {
     analysis_.samples.resize(data_.pipelines.size());
     for (std::size_t at = 0; at < data_.rows.size(); ++at) {
       if (const double found = value(at); !std::isnan(found)) {
-        Sample& sample = analysis_.samples[data_.rows[at].pipeline];
+        const RunRow& row = data_.rows[at];
+        Sample& sample = analysis_.samples[row.pipeline];
+        if (repeat_[row.pipeline] && !sample.rows.empty() &&
+            data_.rows[sample.rows.back()].scenario == row.scenario) {
+          analysis_.has_equal_repetitions = true;
+          continue;
+        }
         sample.values.push_back(found);
         sample.rows.push_back(at);
       }
@@ -164,11 +171,17 @@ class MetricAnalyser {
     comparison.against = against;
     const bool is_once = repeat_[against] && repeat_[pipeline];
     PairedSample sample;
+    const Pair* last = nullptr;  // counted
     for (const Pair& pair : pairs_) {
-      comparison.pairs += pair.rows[against] != kNoRow && pair.rows[pipeline] != kNoRow;
+      if (pair.rows[against] == kNoRow || pair.rows[pipeline] == kNoRow ||
+          (is_once && last != nullptr && last->scenario == pair.scenario)) {
+        continue;
+      }
+      last = &pair;
+      ++comparison.pairs;
       const double x = value(pair.rows[against]);
       const double y = value(pair.rows[pipeline]);
-      if (!std::isnan(x) && !std::isnan(y) && !(is_once && sample.has(pair.scenario))) {
+      if (!std::isnan(x) && !std::isnan(y)) {
         sample.add(x, y, pair.scenario);
       }
     }
@@ -185,7 +198,7 @@ class MetricAnalyser {
     }
     // One list per scenario and pipeline, of the pairs that all pipelines solved.
     std::map<std::size_t, std::vector<std::vector<double>>> scenarios;
-    for (const Pair& pair : pairs_) {
+    for (const Pair& pair : distinct_pairs(data_, analysis_.metric)) {
       std::vector<double> values;
       for (const std::size_t row : pair.rows) {
         values.push_back(value(row));
@@ -228,14 +241,14 @@ class MetricAnalyser {
 
   const StudyData& data_;
   const std::vector<Pair>& pairs_;
-  std::vector<bool> repeat_;
+  std::vector<bool> repeat_;  ///< pipelines whose repetitions have equal values: one counts
   std::size_t column_;
   bool is_of_every_run_;
   MetricAnalysis analysis_;
 };
 /// The trade between two metrics; no pipelines where none has both values.
-Trade trade_of(const StudyData& data, const std::vector<Pair>& pairs,
-               const std::array<std::string, 2>& metrics) {
+Trade trade_of(const StudyData& data, const std::array<std::string, 2>& metrics) {
+  const std::vector<Pair> pairs = distinct_pairs(data, metrics[0]);
   Trade trade;
   trade.metrics = metrics;
   const auto value = [&](std::size_t row, std::size_t k) {
@@ -294,6 +307,11 @@ Analysis analyse(const StudyData& data, bool times) {
   const std::vector<Pair> pairs = pairs_of(data);
   analysis.success = success_of(data);
   analysis.success_comparisons = compare_success(data, pairs);
+  const std::vector<bool> repeat = repeat_themselves(data);
+  analysis.has_equal_repetitions =
+      std::adjacent_find(data.rows.begin(), data.rows.end(), [&](const RunRow& a, const RunRow& b) {
+        return repeat[a.pipeline] && a.pipeline == b.pipeline && a.scenario == b.scenario;
+      }) != data.rows.end();
   std::set<std::string> files;  // of figures, named by their metric
   for (const std::string& metric : compared_metrics(data)) {
     if (!files.insert(slug(metric)).second) {
@@ -313,7 +331,7 @@ Analysis analyse(const StudyData& data, bool times) {
       if (!is_own_metric(first) || !is_own_metric(second)) {
         continue;
       }
-      analysis.trades.push_back(trade_of(data, pairs, {first, second}));
+      analysis.trades.push_back(trade_of(data, {first, second}));
       if (analysis.trades.back().pipelines.empty()) {
         analysis.trades.pop_back();
         analysis.left_out.push_back(first + " and " + second +

@@ -53,7 +53,7 @@ struct SuccessComparison {
 struct Comparison {
   std::size_t pipeline = 0;
   std::size_t against = 0;
-  std::size_t pairs = 0;  ///< that both have run
+  std::size_t pairs = 0;  ///< that both have run; one per scenario if both have equal repetitions
   std::size_t used = 0;
   PairedEffect effect;
   double p_holm = kNone;
@@ -71,7 +71,7 @@ struct Ranking {
   std::vector<std::vector<std::size_t>> joined;
 };
 
-/// The values of a pipeline's solved runs.
+/// The values of a pipeline's solved runs; of a scenario's equal repetitions of the first.
 struct Sample {
   std::vector<double> values;
   std::vector<std::size_t> rows;  ///< index into StudyData::rows, one per value
@@ -81,8 +81,9 @@ struct Sample {
 struct MetricAnalysis {
   std::string metric;
   Better better = Better::lower;
-  std::vector<Sample> samples;  ///< one per pipeline
-  bool is_ratio = false;        ///< effects are ratios (all values positive), otherwise differences
+  std::vector<Sample> samples;         ///< one per pipeline
+  bool has_equal_repetitions = false;  ///< of which one counts
+  bool is_ratio = false;  ///< effects are ratios (all values positive), otherwise differences
   std::vector<Comparison> comparisons;
   std::optional<Ranking> ranking;
   std::string why_no_ranking;
@@ -104,6 +105,7 @@ struct Trade {
 struct Analysis {
   std::vector<Success> success;  ///< one per pipeline
   std::vector<SuccessComparison> success_comparisons;
+  bool has_equal_repetitions = false;  ///< of any pipeline
   std::vector<MetricAnalysis> metrics;
   std::vector<Trade> trades;          ///< of each two metrics of one's own
   std::vector<std::string> left_out;  ///< sentences on metrics that no run has, and trades
@@ -135,4 +137,9 @@ struct Pair {
   std::vector<std::size_t> rows;
 };
 std::vector<Pair> pairs_of(const StudyData& data);
+/// Those with values of their own of the metric: if all pipelines repeat themselves, one of each
+/// scenario; all of a time or memory.
+std::vector<Pair> distinct_pairs(const StudyData& data, const std::string& metric);
+/// For captions: " (equal repetitions count once)" if there are any.
+std::string equal_repetitions(bool any);
 }  // namespace altiplan::study::report

@@ -173,8 +173,10 @@ class BoxPanel {
   std::size_t hidden_ = 0;
 };
 
-std::string caption_of(std::size_t panels, std::size_t runs, std::size_t hidden) {
+std::string caption_of(const MetricAnalysis& metric, std::size_t panels, std::size_t runs,
+                       std::size_t hidden) {
   std::string caption = counted(runs, "solved run") +
+                        equal_repetitions(metric.has_equal_repetitions) +
                         ". Box: quartiles and median; whiskers: the last value within 1.5 "
                         "interquartile ranges; points: outliers, or all of up to " +
                         std::to_string(kFew) + " runs.";
@@ -207,7 +209,7 @@ Figure box_figure(const StudyData& data, const MetricAnalysis& metric) {
   }
   return {"boxes-" + slug(metric.metric),
           metric_title(metric.metric) + " of solved runs",
-          caption_of(panels.size(), runs, hidden),
+          caption_of(metric, panels.size(), runs, hidden),
           kFigureWidth,
           y,
           canvas.take(),

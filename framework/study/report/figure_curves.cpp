@@ -150,7 +150,7 @@ std::optional<Figure> profile_figure(const StudyData& data, const MetricAnalysis
   }
   const std::size_t column = data.column(metric.metric);
   std::vector<std::vector<double>> costs(data.pipelines.size());
-  for (const Pair& pair : pairs_of(data)) {
+  for (const Pair& pair : distinct_pairs(data, metric.metric)) {
     if (std::find(pair.rows.begin(), pair.rows.end(), kNoRow) != pair.rows.end()) {
       continue;
     }

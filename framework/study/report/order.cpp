@@ -203,4 +203,26 @@ std::vector<Pair> pairs_of(const StudyData& data) {
   }
   return pairs;
 }
+
+std::vector<Pair> distinct_pairs(const StudyData& data, const std::string& metric) {
+  const std::vector<bool> repeat = repeat_themselves(data);
+  std::vector<Pair> all = pairs_of(data);
+  if (is_measured(metric) || std::find(repeat.begin(), repeat.end(), false) != repeat.end()) {
+    return all;
+  }
+  const auto lacks_run = [](const Pair& pair) {
+    return std::find(pair.rows.begin(), pair.rows.end(), kNoRow) != pair.rows.end();
+  };
+  std::vector<Pair> pairs;
+  for (Pair& pair : all) {
+    if (pairs.empty() || pairs.back().scenario != pair.scenario) {
+      pairs.push_back(std::move(pair));
+    } else if (lacks_run(pairs.back())) {
+      pairs.back() = std::move(pair);
+    }
+  }
+  return pairs;
+}
+
+std::string equal_repetitions(bool any) { return any ? " (equal repetitions count once)" : ""; }
 }  // namespace altiplan::study::report

@@ -212,8 +212,8 @@ Table par_table(const Content& content) {
   const double limit = data.file.budget.time_s.value_or(kNone);
   Table table{
       "par",
-      "Penalised average planning time: mean over all runs, of which one that did not solve "
-      "counts twice, or ten times, the time budget of " +
+      "Penalised average planning time: mean over all runs, of which one that did not solve, also "
+      "of an invalid problem, counts twice, or ten times, the time budget of " +
           readable(limit) + " s",
       columns({"pipeline", "#runs", "#PAR-2, s", "#PAR-10, s"}),
       {}};
@@ -236,15 +236,17 @@ Table par_table(const Content& content) {
 }
 
 Table success_comparison_table(const Content& content) {
-  Table table{
-      "success-pairs",
-      "Success, pipeline against pipeline: exact sign test over n scenarios (repetitions "
-      "if there is one scenario), Holm's correction over all rows; the difference of the shares "
-      "with Tango's interval",
-      columns({"pipeline", "against", "#n", "#it more often", "#the other more often", "#p",
-               "#p (Holm)", "#difference", "[95 % interval", "#runs of both", "#it alone solved",
-               "#the other alone solved"}),
-      {}};
+  Table table{"success-pairs",
+              "Success, pipeline against pipeline" +
+                  equal_repetitions(content.analysis.has_equal_repetitions) +
+                  ": exact sign test over n scenarios (repetitions "
+                  "if there is one scenario), Holm's correction over all rows; the difference of "
+                  "the shares "
+                  "with Tango's interval",
+              columns({"pipeline", "against", "#n", "#it more often", "#the other more often", "#p",
+                       "#p (Holm)", "#difference", "[95 % interval", "#runs of both",
+                       "#it alone solved", "#the other alone solved"}),
+              {}};
   for (const SuccessComparison& comparison : content.analysis.success_comparisons) {
     const double difference = (double(comparison.only_pipeline) - double(comparison.only_against)) /
                               double(comparison.pairs);
@@ -260,7 +262,7 @@ Table success_comparison_table(const Content& content) {
 
 Table metric_table(const Content& content) {
   Table table{"metrics",
-              "Values of solved runs",
+              "Values of solved runs" + equal_repetitions(content.analysis.has_equal_repetitions),
               columns({"metric", "pipeline", "#runs", "#median", "[quartiles", "#mean", "#least",
                        "#greatest"}),
               {}};
@@ -285,18 +287,19 @@ Table metric_table(const Content& content) {
 
 Table common_table(const Content& content) {
   const StudyData& data = content.data;
-  std::vector<Pair> common = pairs_of(data);
-  std::erase_if(common, [&](const Pair& pair) {
-    return std::any_of(pair.rows.begin(), pair.rows.end(),
-                       [&](std::size_t row) { return row == kNoRow || !data.rows[row].solved(); });
-  });
   Table table{"common",
-              "Values over the " + counted(common.size(), "pair") +
-                  " (scenario, repetition) that all pipelines solved",
+              "Values over the pairs (scenario, repetition) that all pipelines solved" +
+                  equal_repetitions(content.analysis.has_equal_repetitions),
               columns({"metric", "pipeline", "#pairs", "#median", "#mean", "#least", "#greatest"}),
               {}};
   for (const MetricAnalysis& metric : content.analysis.metrics) {
     const std::size_t column = data.column(metric.metric);
+    std::vector<Pair> common = distinct_pairs(data, metric.metric);
+    std::erase_if(common, [&](const Pair& pair) {
+      return std::any_of(pair.rows.begin(), pair.rows.end(), [&](std::size_t row) {
+        return row == kNoRow || !data.rows[row].solved();
+      });
+    });
     for (std::size_t p = 0; p < data.pipelines.size(); ++p) {
       std::vector<double> values;
       for (const Pair& pair : common) {
@@ -322,8 +325,9 @@ Table comparison_table(const Content& content, const MetricAnalysis& metric) {
   Table table{
       "pairs-" + slug(metric.metric),
       metric_label(metric.metric) + ", pipeline against pipeline on the pairs that both solved (" +
-          (metric.better == Better::lower ? "lower" : "higher") +
-          " is better): Wilcoxon's signed-rank test over n scenarios (repetitions if "
+          (metric.better == Better::lower ? "lower" : "higher") + " is better)" +
+          equal_repetitions(metric.has_equal_repetitions) +
+          ": Wilcoxon's signed-rank test over n scenarios (repetitions if "
           "there is one scenario), Holm's correction over all rows",
       columns({"pipeline", "against", metric.is_ratio ? "#median ratio" : "#median difference",
                "[95 % interval", "#n", "#p", "#p (Holm)", "#rank-biserial", "better",

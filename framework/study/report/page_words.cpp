@@ -9,19 +9,25 @@
 namespace altiplan::study::report {
 namespace {
 
-/// "all 3 claims hold", "2 of 3 claims hold, 1 fails".
+/// "all 3 claims hold", "2 of 3 claims hold, 1 fails (with Holm's correction 1 of these becomes
+/// undecided)".
 std::string claims_in_short(const std::vector<JudgedClaim>& claims) {
   std::map<Verdict, std::size_t> counts;
   for (const JudgedClaim& judged : claims) {
     ++counts[judged.verdict];
   }
   const std::size_t hold = counts[Verdict::holds];
+  const auto lost = std::count_if(claims.begin(), claims.end(), becomes_undecided);
+  const std::string after_holm =
+      lost == 0 ? ""
+                : " (with Holm's correction " + std::to_string(lost) +
+                      (lost == 1 ? " of these becomes" : " of these become") + " undecided)";
   if (claims.size() == 1) {
     static constexpr const char* kWords[] = {"holds", "fails", "is undecided", "has no data"};
     return std::string("its claim ") + kWords[int(claims.front().verdict)];
   }
   if (hold == claims.size()) {
-    return "all " + grouped(hold) + " claims hold";
+    return "all " + grouped(hold) + " claims hold" + after_holm;
   }
   std::string text = (hold == 0 ? "none" : grouped(hold)) + " of " +
                      counted(claims.size(), "claim") + (hold < 2 ? " holds" : " hold");
@@ -34,7 +40,7 @@ std::string claims_in_short(const std::vector<JudgedClaim>& claims) {
   if (counts[Verdict::no_data] > 0) {
     text += ", " + grouped(counts[Verdict::no_data]) + " without data";
   }
-  return text;
+  return text + after_holm;
 }
 
 std::size_t max_repetitions(const StudyData& data) {
@@ -102,6 +108,17 @@ std::vector<std::string> lacking(const Content& content) {
   if (content.absent.scenarios > 0) {
     sentences.push_back("No run of " + counted(content.absent.scenarios, "scenario") + ".");
   }
+  const auto& rows = content.data.rows;
+  const bool has_solved =
+      std::any_of(rows.begin(), rows.end(), [](const RunRow& row) { return row.solved(); });
+  for (const MetricChoice& metric : content.data.file.metrics) {
+    const bool is_left_out = !content.times && varies(metric.name);
+    if (has_solved && !is_left_out &&
+        content.data.column(metric.name) == content.data.columns.size()) {
+      sentences.push_back("No run has a value '" + printable(metric.name) +
+                          "', a metric of the study.");
+    }
+  }
   const auto lacks = [](const Comparison& comparison) {
     return comparison.used > 0 && !comparison.effect.interval;
   };
@@ -156,7 +173,8 @@ std::vector<std::string> method_text(const Content& content) {
       "logarithms), "
       "one per scenario (the median over its repetitions) or, with one scenario, one per "
       "repetition "
-      "(repetitions of a pipeline are one run if all their values but times and memory are equal); "
+      "(repetitions of a pipeline are one run if all their values but times and memory, "
+      "which count each, are equal); "
       "zeros are dropped, ties "
       "share the mean of their ranks; exact for at most 50 differences, otherwise by the normal "
       "distribution with correction for ties, not for continuity. n is the number of differences. "
