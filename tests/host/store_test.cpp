@@ -115,6 +115,12 @@ TEST_F(StoreTest, RefusesWhatIsNoStore) {
   fs::remove(file_);
   Sqlite(file_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE).run("CREATE TABLE t(x)");
   EXPECT_HAS(error_of(StoreMode::write), "not of altiplan study");
+  fs::remove(file_);
+  { const Store store(file_, StoreMode::write); }
+  Sqlite(file_, SQLITE_OPEN_READWRITE).run("PRAGMA user_version = 1");
+  EXPECT_HAS(error_of(StoreMode::read),
+             "is of version 1 of the store; this program supports version 2: run the study again "
+             "with another --out, or use the program of that version");
 }
 
 TEST_F(StoreTest, TakesAnEmptyFileAloneForANewOne) {

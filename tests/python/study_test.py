@@ -129,6 +129,14 @@ steps:
             store.execute("CREATE TABLE study(name, value)")
         self.assertRaisesRegex(altiplan.Error, "not a database of a study", altiplan.Study,
                                self.folder / "other.db")
+        self.assertRaisesRegex(altiplan.Error, "none.db: No such file or directory$", altiplan.Study,
+                               self.folder / "none.db")
+        with sqlite3.connect(self.folder / "old.db") as store:
+            store.execute(f"PRAGMA application_id = {0x616C7470}")
+            store.execute("PRAGMA user_version = 1")
+        self.assertRaisesRegex(altiplan.Error, "old.db is of version 1 of the store; this program supports version 2: "
+                               "run the study again with another out, or use the program of that version$",
+                               altiplan.Study, self.folder / "old.db")
 
     def test_arguments(self):
         for expected, named in [

@@ -72,14 +72,22 @@ class Study:
     def _opened(self) -> Iterator[sqlite3.Connection]:
         """A connection that sees one state of the database."""
         try:
+            os.stat(self.path)
+        except OSError as error:
+            raise Error(f"{self.path}: {error.strerror}", self.path) from None
+        try:
             store = sqlite3.connect(pathlib.Path(self.path).as_uri() + "?mode=ro", uri=True,
                                     isolation_level=None)
             try:
                 store.execute("BEGIN")
                 kind = store.execute("PRAGMA application_id").fetchone()[0]
                 version = store.execute("PRAGMA user_version").fetchone()[0]
-                if kind != _APPLICATION_ID or version != _FORMAT:
-                    raise Error(f"{self.path}: not a database of a study, of format {_FORMAT}", self.path)
+                if kind != _APPLICATION_ID:
+                    raise Error(f"{self.path}: not a database of a study", self.path)
+                if version != _FORMAT:
+                    raise Error(f"{self.path} is of version {version} of the store; this program supports "
+                                f"version {_FORMAT}: run the study again with another out, or use the "
+                                "program of that version", self.path)
                 yield store
             finally:
                 store.close()

@@ -156,7 +156,8 @@ void StoreDatabase::expect_store() const {
   }
   if (version != kVersion) {
     throw Error("'" + sqlite.file().string() + "' is of version " + std::to_string(version) +
-                " of the store; this program supports version " + std::to_string(kVersion));
+                " of the store; this program supports version " + std::to_string(kVersion) +
+                ": run the study again with another --out, or use the program of that version");
   }
   expect_tables();
 }
