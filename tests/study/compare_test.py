@@ -30,6 +30,8 @@ class Compare(StudyCase):
         self.assertIn(" 6 scenarios ", out)
         self.assertEqual(out.count("WORSE"), 2, out)
         self.assertIn("x 1.08 [1.08, 1.08]", out)
+        self.assertEqual(out.splitlines()[-1], "the second is worse: beyond the tolerance: length_m of octile, length_m of "
+                         "greedy")
         self.call("compare", before, after, "--metric", "length_m")
         out, _ = self.call("compare", before, after, "--metric", "length_m", "--gate",
                            "--tolerance", "10")
@@ -45,6 +47,20 @@ class Compare(StudyCase):
         self.assertEqual(out.count("unclear, too few scenarios: at least 6 for 95 %\n"), 2, out)
         out, _ = self.call("compare", before, after, "--metric", "length_m", "--gate", code=1)
         self.assertEqual(out.count("WORSE"), 2, out)
+
+    def test_the_last_line_tells_what_differs(self):
+        self.write("study.yaml", STUDY.replace("1..3", "1..6"))
+        before, after = self.store("a.db"), self.store("b.db")
+        chosen = ("--metric", "length_m", "--metric", "plan_time_s")
+        self.change(after, self.VALUE.format(by=100, name="plan_time_s"))
+        out, _ = self.call("compare", before, after, *chosen)
+        self.assertTrue(out.splitlines()[-1].startswith("the second is worse: beyond the tolerance: plan_time_s of "), out)
+        self.assertTrue(out.splitlines()[-1].endswith("; only times or memory differ"), out)
+        out, _ = self.call("compare", before, after, "--metric", "plan_time_s")
+        self.assertNotIn("only times", out)
+        self.change(after, self.VALUE.format(by=1.001, name="length_m"))
+        out, _ = self.call("compare", before, after, *chosen)
+        self.assertNotIn("only times", out)
 
     def test_what_changed_is_told(self):
         before = self.store("a.db")
@@ -62,6 +78,7 @@ class Compare(StudyCase):
         out, _ = self.call("compare", before, after, "--metric", "length_m", "--gate", code=1)
         self.assertIn("newly failing: 1\n  octile city[seed=2] #1: solved, then crashed: astar: "
                       "SIGSEGV\n", out)
+        self.assertEqual(out.splitlines()[-1], "the second is worse: newly failing: octile city[seed=2] #1")
         out, _ = self.call("compare", after, before, "--metric", "length_m", "--gate")
         self.assertIn("newly solved: 1\n  octile city[seed=2] #1: crashed, then solved\n", out)
 

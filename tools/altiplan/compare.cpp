@@ -144,13 +144,42 @@ void print_origins(const study::Comparison& comparison, const study::StudyData& 
   print_more(changed.size());
 }
 
+/// "one, two, three and 4 more"
+std::string first_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 3;
+  std::string words;
+  for (std::size_t n = 0; n < std::min(names.size(), kNamed); ++n) {
+    words += (n == 0 ? "" : ", ") + names[n];
+  }
+  const std::size_t more = names.size() - std::min(names.size(), kNamed);
+  return words + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
+/// "newly failing: astar city #0; beyond the tolerance: length_m of astar"
+std::string what_is_worse(const study::Comparison& comparison) {
+  std::vector<std::string> runs;
+  std::vector<std::string> metrics;
+  for (const study::OutcomeChange& change : comparison.lost) {
+    runs.push_back(change.run);
+  }
+  for (const study::MetricChange& change : comparison.metrics) {
+    if (change.verdict == study::MetricChange::Verdict::worse) {
+      metrics.push_back(change.metric + " of " + change.pipeline);
+    }
+  }
+  std::string words = runs.empty() ? "" : "newly failing: " + first_of(runs);
+  if (!metrics.empty()) {
+    words += (runs.empty() ? "" : "; ") + ("beyond the tolerance: " + first_of(metrics));
+  }
+  return words;
+}
+
 /// Prints the last line; true if the gate passes.
 bool print_verdict(const study::Comparison& comparison) {
   const std::size_t missing = comparison.only_first + comparison.other_seeds;
-  std::string words = comparison.is_worse()
-                          ? "the second is worse: a run newly fails, or a metric exceeds the "
-                            "tolerance"
-                          : "nothing is worse";
+  std::string words = comparison.is_worse() ? "the second is worse: " + what_is_worse(comparison)
+                                            : "nothing is worse";
+  words += comparison.differs_in_times_only() ? "; only times or memory differ" : "";
   if (missing > 0) {
     words += "; " + std::to_string(missing) + (missing == 1 ? " run" : " runs") +
              " of the first cannot be compared: the second has no run of that name and seed";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -248,6 +249,19 @@ class Comparer {
   Comparison comparison_;
 };
 }  // namespace
+
+bool Comparison::differs_in_times_only() const {
+  const auto any = [&](bool measured, auto&& is) {
+    return std::any_of(metrics.begin(), metrics.end(), [&](const MetricChange& change) {
+      return is_measured(change.metric) == measured && change.pairs > 0 && is(change);
+    });
+  };
+  const auto differs = [](const MetricChange& change) {
+    return change.verdict != MetricChange::Verdict::same;
+  };
+  return any(true, differs) && any(false, std::not_fn(differs)) && !any(false, differs) &&
+         lost.empty() && won.empty() && others.empty() && differing.empty();
+}
 
 bool Comparison::is_worse() const {
   return !lost.empty() || std::any_of(metrics.begin(), metrics.end(), [](const auto& change) {

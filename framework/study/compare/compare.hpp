@@ -74,6 +74,8 @@ struct Comparison {
 
   /// True if a run newly fails, or a metric is worse.
   bool is_worse() const;
+  /// True if outcomes and all other compared metrics are the same.
+  bool differs_in_times_only() const;
   /// True if each run of the first can be compared with one of the second.
   bool is_whole() const { return only_first == 0 && other_seeds == 0; }
 };
