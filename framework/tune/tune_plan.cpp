@@ -234,8 +234,18 @@ TunePlan plan_tuning(const TuneRequest& request) {
       metrics.push_back(metric.id);
     }
   }
+  study::PipelineParts parts{plan.config.pipeline_path.stem().string(), {}, false, true};
+  for (const host::StepEntry& step : plan.config.steps) {
+    parts.steps.push_back(step.id);
+    parts.flies = parts.flies || step.verb == host::Verb::fly;
+    for (const host::StepEntry& other : step.otherwise) {
+      parts.steps.push_back(other.id);
+    }
+  }
   for (const study::ClaimValue& value : plan.objective.values) {
-    if (const std::string why = study::why_no_value(value.name, metrics); !why.empty()) {
+    std::string why = study::why_no_value(value.name, metrics);
+    why = why.empty() ? study::why_no_part(value.name, {parts}) : why;
+    if (!why.empty()) {
       throw ConfigError(Location{"", 0, 0, "--metric " + request.metric}, "", why);
     }
   }

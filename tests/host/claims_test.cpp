@@ -229,6 +229,20 @@ TEST(Claims, ValuesThatNoRunHas) {
   EXPECT_EQ(study.judge("share(a.solved)", "<= 1").words, "No data: the study has no runs yet.");
 }
 
+TEST(Claims, ValuesThatOnlyAnotherPipelineHas) {
+  Study study(2, 1, 1);
+  study.data().columns.emplace_back("steps.route.length_m");
+  study.data().columns.emplace_back("steps.rout.length_m");
+  for (RunRow& row : study.data().rows) {
+    row.values.push_back(row.pipeline == 0 ? 1 : kNone);
+    row.values.push_back(row.pipeline == 1 ? 1 : kNone);
+  }
+  EXPECT_EQ(study.judge("median(b.steps.route.length_m)", "<= 1").words,
+            "No data: no run of 'b' has a value 'steps.route.length_m'; did you mean "
+            "'steps.rout.length_m'? 0 of 2 pairs counted; b.steps.route.length_m has no number in "
+            "2.");
+}
+
 TEST(Claims, ARunThatIsNotThereIsNoFailure) {
   Study study(5, 1, 1);
   study.data().rows.erase(study.data().rows.begin() + 1);  // b of the first scenario

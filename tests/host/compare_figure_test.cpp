@@ -55,6 +55,24 @@ TEST(CompareFigure, AllRunsGiveEveryDigit) {
   EXPECT_EQ(whole("mean(p.flight.missing)", "3"), Mark::differs) << "no run has it";
 }
 
+TEST(CompareFigure, ASharesCountIsOfAllRunsAsInTheReport) {
+  StudyData data = runs(20);
+  StudyData twice = data;
+  twice.rows.clear();
+  for (RunRow& row : data.rows) {
+    row.outcome = row.scenario < 2 ? "no_path" : "solved";
+    for (row.repetition = 0; row.repetition < 2; ++row.repetition) {
+      twice.rows.push_back(row);
+    }
+  }
+  const ReproducedFigure figure = compared(twice, "share(p.solved)", "36/40", false);
+  EXPECT_EQ(figure.here, "36/40");
+  EXPECT_EQ(figure.mark, Mark::equal);
+  EXPECT_EQ(compared(twice, "share(p.solved)", "36/40", true).mark, Mark::within);
+  EXPECT_EQ(compared(twice, "median(p.x)", "18/20", false).mark, Mark::equal)
+      << "as the report's tables of metrics, where equal repetitions count once";
+}
+
 TEST(CompareFigure, TimesAreNeverJudged) {
   EXPECT_EQ(whole("median(p.plan_time_s)", "77"), Mark::time);
   EXPECT_EQ(sample("median(p.plan_time_s / p.x)", "77"), Mark::time);

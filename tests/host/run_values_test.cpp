@@ -78,5 +78,24 @@ TEST(RunValues, NamesOfReplansAreKnown) {
       "no run has a value 'replan_counters.expanded': expected a value of the run, or flight.…, "
       "flight.counters.…, flight.replan_counters.…, steps.ID.…, steps.ID.counters.…");
 }
+
+TEST(RunValues, PartsThatNoPipelineHas) {
+  const PipelineParts astar{"astar", {"route", "hermite"}, false, true};
+  const PipelineParts theta{"theta", {"theta_star", "pilot.2"}, true, true};
+  const PipelineParts unknown{"lost", {}, false, false};
+  for (const char* name : {"length_m", "steps.route.length_m", "steps.pilot.2.counters.x",
+                           "flight.length_m", "task.flights"}) {
+    EXPECT_EQ(why_no_part(name, {astar, theta}), "") << name;
+    EXPECT_EQ(why_no_part(name, {astar, unknown}), "") << name;
+  }
+  EXPECT_EQ(why_no_part("steps.rute.length_m", {astar, theta}),
+            "no run has a value 'steps.rute.length_m': no pipeline has a step 'rute'; did you mean "
+            "'steps.route.length_m'?");
+  EXPECT_EQ(why_no_part("steps.route.counters.n", {theta}),
+            "no run of 'theta' has a value 'steps.route.counters.n': it has no step 'route', only "
+            "pilot.2, theta_star");
+  EXPECT_EQ(why_no_part("flight.length_m", {astar}),
+            "no run of 'astar' has a value 'flight.length_m': it has no fly step");
+}
 }  // namespace
 }  // namespace altiplan::host::run_values_test

@@ -49,7 +49,7 @@ class Compare(StudyCase):
         self.assertEqual(out.count("WORSE"), 2, out)
 
     def test_the_last_line_tells_what_differs(self):
-        self.write("study.yaml", STUDY.replace("1..3", "1..6"))
+        self.write("study.yaml", STUDY.replace("1..3", "1..8"))
         before, after = self.store("a.db"), self.store("b.db")
         chosen = ("--metric", "length_m", "--metric", "plan_time_s")
         self.change(after, self.VALUE.format(by=100, name="plan_time_s"))

@@ -46,7 +46,7 @@ tables:
       - {name: "most, km", of: max(ROW.length_m / 1000)}
       - {name: "time, ms", of: median(1000 * ROW.plan_time_s)}
     rows:
-      - {id: octile, what: the usual one, paper: ["", 1.5], documentation: [100 %, 1.234, 1.234, 1.2]}
+      - {id: octile, what: the usual one, paper: ["", 1.5, "", ""], documentation: [100 %, 1.234, 1.234, 1.2]}
       - {id: greedy, row: "greedy[weight_g=0.3]", what: the greedy one, documentation: [40/40, 1.234]}
   - heading: Claims
     runs: cities
@@ -146,6 +146,26 @@ class Reproduce(case.StudyCase):
         self.assertEqual(figure["mark"], "too few")
         self.assertEqual(figure["sample"], "too few scenarios: at least 11 for 99.9 %")
 
+    def test_without_documentation(self):
+        """Who writes a paper of his own has no figures yet: they are shown, and none is compared."""
+        text = re.sub(r", documentation: \[[^]]*\]", "", PAPER)
+        text = re.sub(r", verdict: holds, measured: \"[^\"]*\"", "", text)
+        text = re.sub("title: .*\n|page: .*\n", "", text)
+        self.write("007_cities.yaml", text)
+        rows = self.reproduce(self.paper, "--out", "kept")
+        self.assertEqual({figure["mark"] for figures in rows.values() for figure in figures.values()},
+                         {"not compared"})
+        self.assertEqual(rows["octile"]["solved"]["here"], "40/40")
+        self.assertRegex(rows["octile"]["length, median, km"]["here"], r"^\d\.\d$", "as the paper's")
+        self.assertRegex(rows["greedy"]["length, median, km"]["here"], r"^\d\.\d{3}$")
+        self.assertEqual(rows["saves"]["verdict"]["here"], "holds")
+        self.assertRegex(rows["saves"]["measured"]["here"], r"^0\.\d+ \[0\.\d+, 0\.\d+\]$")
+        out, _ = self.call("reproduce", self.paper, "--out", "kept")
+        self.assertIn("\n007 cities\n", "\n" + out)
+        self.assertRegex(out, r"(?m)^ +paper +this machine$")
+        self.assertRegex(out, r"(?m)^    length, median, km +1\.5 +\d\.\d$")
+        self.assertIn("10 figures: none is compared", out)
+
     def test_rows(self):
         self.documented()
         rows = self.reproduce(self.paper, "--row", "greedy", "--row", "saves", "--out", "kept")
@@ -190,14 +210,26 @@ class Reproduce(case.StudyCase):
                  "of row 'octile': shore(octile.solved): at character 1: expected median(, mean("),
                 ("median(ROW.length_m", "median(ROW.lengt_m", "16:38: tables.0.columns.1.of",
                  "no run has a value 'lengt_m'; did you mean 'length_m'?"),
-                ("row: \"greedy[weight_g=0.3]\"", "row: gredy", "15:24: tables.0.columns.0.of",
-                 "of row 'greedy': share(gredy.solved): at character 7: "),
+                ("row: \"greedy[weight_g=0.3]\"", "row: gredy", "21:22: tables.0.rows.1.row",
+                 "no pipeline is named 'gredy'; did you mean 'greedy'?"),
                 ("[40/40, 1.234]", "[40/40, about 1]", "21:96: tables.0.rows.1.documentation.1",
                  "expected a figure as 303, 1,231, 0.45, 92.6 %, 54/100"),
                 ("[40/40, 1.234]", "[1, 2, 3, 4, 5]", "21:73: tables.0.rows.1.documentation",
                  "expected at most 4 figures, one for each column, found 5"),
                 ("[40/40, 1.234]", "[\"\", \"\"]", "21:73: tables.0.rows.1.documentation",
-                 "expected at least one figure, found none"),
+                 "has no figure: give at least one, or leave the key out to compare none"),
+                ('paper: ["", 1.5,', 'paper: ["", abc,', "20:55: tables.0.rows.0.paper.1",
+                 "expected a figure as 303"),
+                ('paper: ["", 1.5,', 'paper: ["", "1.5O",', "20:55: tables.0.rows.0.paper.1",
+                 "expected a figure as 303"),
+                ('paper: ["", 1.5, "", ""]', 'paper: ["", 1.5]', "20:43: tables.0.rows.0.paper",
+                 'expected 4 figures, one for each column, "" where the paper prints nothing; found 2'),
+                ("of: share(ROW.solved)", "of: share(RAW.solved)", "15:24: tables.0.columns.0.of",
+                 "share(RAW.solved): at character 7: no pipeline is named 'RAW'; did you mean 'ROW'?"),
+                ("id: octile, what", "id: octil, what", "20:10: tables.0.rows.0.id",
+                 "no pipeline is named 'octil'; did you mean 'octile'?"),
+                ("title: Two searches", 'title: ""', "2:1: title", "is empty: give the title, or leave the key out"),
+                ("page: cities.md", 'page: ""', "3:1: page", "is empty: give the page, or leave the key out"),
                 ("id: greedy,", "id: octile,", "21:10: tables.0.rows.1.id", "the id 'octile' is taken"),
                 ("runs: cities\n    claims", "runs: citie\n    claims", "23:5: tables.1.runs",
                  "there are no runs 'citie'; did you mean 'cities'?"),
@@ -210,7 +242,10 @@ class Reproduce(case.StudyCase):
                 ("quick: 0.5", "quick: 5", "8:12: runs.0.quick", "expected"),
                 ("octile: 10, ", "", "9:5: runs.0.cpu_ms", "the time of the pipeline 'octile' is missing"),
                 ("octile: 10", "octile: fast", "9:22: runs.0.cpu_ms.octile", "expected a time above 0 (ms)"),
-                ("octile: 10", "octile: 10, optimal: 3", "9:26: runs.0.cpu_ms.optimal", "no row names this"),
+                ("octile: 10", "octile: 10, optimal: 3", "9:26: runs.0.cpu_ms.optimal",
+                 "no row names the pipeline 'optimal', so it is not run"),
+                ("octile: 10", "octil: 10", "9:14: runs.0.cpu_ms.octil",
+                 "no row names the pipeline 'octil'; did you mean 'octile'?"),
                 ("title:", "titel:", "2:1: titel", "did you mean 'title'?"),
                 ("tables:", "tables: 5\nrows:", "10:9: tables", "expected a list"),
                 ("runs:\n", "runs: [\n", "", "")):
@@ -223,6 +258,14 @@ class Reproduce(case.StudyCase):
                     self.assertEqual(out, "")
                     self.assertIn("007_cities.yaml:" + where, err)
                     self.assertIn(message, err)
+        # One sentence for each mistake, all at once.
+        self.write("007_cities.yaml", PAPER.replace("id: octile, what", "id: octil, what")
+                   .replace("[40/40, 1.234]", "[40/40, about 1]").replace("share(ROW", "share(RAW")
+                   .replace("{id: saves,", "{id: save,"))
+        _, err = self.call("validate", self.paper, code=3)
+        self.assertEqual(err.count("007_cities.yaml:"), 4, err)
+        self.write("007_cities.yaml", PAPER.replace("octile: 10", "octil: 10"))
+        self.assertEqual(self.call("validate", self.paper, code=3)[1].count("007_cities.yaml:"), 1)
         self.write("007_cities.yaml", "altiplan: 1\nsteps: []\n")
         self.assertIn("expected a paper", self.refused("reproduce", self.paper))
         self.assertIn("no-such.yaml", self.refused("reproduce", "no-such.yaml"))

@@ -23,7 +23,7 @@ std::string left(const std::string& text, std::size_t width) {
 
 /// "within: 0.61 to 0.72"
 std::string mark_text(const study::ReproducedFigure& figure) {
-  const std::string mark = study::name(figure.mark);
+  const std::string mark = figure.mark == Mark::none ? "" : study::name(figure.mark);
   if (figure.why.empty()) {
     return mark;
   }
@@ -53,8 +53,8 @@ struct Widths {
                    const std::string& of_documentation, const std::string& of_here,
                    const std::string& mark) const {
     std::string text = "    " + left(of_name, name) + "  " + right(of_paper, paper) + "  " +
-                       right(of_documentation, documentation) + "  " + right(of_here, here) + "  " +
-                       mark;
+                       (documentation > 0 ? right(of_documentation, documentation) + "  " : "") +
+                       right(of_here, here) + "  " + mark;
     text.resize(text.find_last_not_of(' ') + 1);
     return text + "\n";
   }
@@ -64,12 +64,15 @@ Widths widths_of(const study::ReproducedRuns& done) {
   const auto widen = [](std::size_t& width, const std::string& text) {
     width = std::max(width, study::report::characters(text));
   };
-  Widths widths{0, 5, 13, 12};
+  Widths widths{0, 5, 0, 12};  // nobody who writes a paper of his own has a documentation yet
   for (const study::ReproducedRow& row : done.rows) {
     for (const study::ReproducedFigure& figure : row.figures) {
       widen(widths.name, figure.figure->name);
       widen(widths.paper, figure.figure->paper);
-      widen(widths.documentation, figure.figure->documentation);
+      if (!figure.figure->documentation.empty()) {
+        widen(widths.documentation, "documentation");
+        widen(widths.documentation, figure.figure->documentation);
+      }
       widen(widths.here, figure.here);
     }
   }
@@ -112,15 +115,19 @@ std::string MarkCounts::text() const {
     all += count;
   }
   std::string text;
-  for (const auto& [mark, words] : {std::pair(Mark::equal, "equal"),
-                                    std::pair(Mark::within, "within the sample's 99.9 % interval"),
-                                    std::pair(Mark::time, of(Mark::time) == 1 ? "time" : "times"),
-                                    std::pair(Mark::too_few, "of too few runs")}) {
+  for (const auto& [mark, words] :
+       {std::pair(Mark::equal, "equal"),
+        std::pair(Mark::within, "within the sample's 99.9 % interval"),
+        std::pair(Mark::time, of(Mark::time) == 1 ? "time" : "times"),
+        std::pair(Mark::too_few, "of too few runs"), std::pair(Mark::none, "not compared")}) {
     if (of(mark) > 0) {
       text += (text.empty() ? "" : ", ") + study::report::grouped(of(mark)) + " " + words;
     }
   }
   const std::size_t differ = of(Mark::differs);
+  if (all == of(Mark::none)) {
+    return study::report::counted(all, "figure") + ": none is compared";
+  }
   return study::report::counted(all, "figure") + ": " + text + (text.empty() ? "" : "; ") +
          (differ == 0   ? "none differs"
           : differ == 1 ? "1 DIFFERS"

@@ -19,7 +19,7 @@ class MarkCounts {
   std::string text() const;
 
  private:
-  std::array<std::size_t, 5> counts_{};
+  std::array<std::size_t, 6> counts_{};
 };
 
 /// "002 fusion_astar: Fusion of A* and potential field (docs/papers/fusion_astar.md)"

@@ -130,13 +130,14 @@ class Evaluation {
 };
 }  // namespace
 
-ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity) {
+ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity, EqualRepetitions equal) {
   std::set<std::size_t> named;
   for (const ClaimValue& value : quantity.values) {
     named.insert(value.pipeline);
   }
   const std::vector<bool> repeat = repeat_themselves(data);
   const bool is_once =
+      equal == EqualRepetitions::count_once &&
       std::all_of(named.begin(), named.end(), [&](std::size_t p) { return repeat[p]; });
   Evaluation evaluation(data, quantity);
   // Rows are sorted by scenario, so the pairs of a scenario are contiguous.

@@ -23,8 +23,12 @@ struct ClaimPairs {
 /// in comparisons too.
 double evaluate(const ClaimExpression& expression, const std::vector<double>& values);
 
+/// Whether equal repetitions are one pair.
+enum class EqualRepetitions { count_once, count_each };
+
 /// A pair counts if every named value is a number; one of each scenario if all pipelines named
-/// repeat_themselves. `p.solved and …` is false if p did not solve:
+/// repeat_themselves and these `count_once`. `p.solved and …` is false if p did not solve:
 /// other values of p are then not needed.
-ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity);
+ClaimPairs pairs_of(const StudyData& data, const ClaimQuantity& quantity,
+                    EqualRepetitions equal = EqualRepetitions::count_once);
 }  // namespace altiplan::study

@@ -36,19 +36,34 @@ std::string name_of(const ClaimValue& value, const StudyData& data) {
   return data.pipelines[value.pipeline].name + "." + value.name;
 }
 
+/// The values that runs of the pipeline have.
+std::vector<std::string> values_of(std::size_t pipeline, const StudyData& data) {
+  std::vector<std::string> names{"solved"};
+  for (std::size_t at = 0; at < data.columns.size(); ++at) {
+    const auto has = [&](const RunRow& row) {
+      return row.pipeline == pipeline && at < row.values.size() && !std::isnan(row.values[at]);
+    };
+    if (std::any_of(data.rows.begin(), data.rows.end(), has)) {
+      names.push_back(data.columns[at]);
+    }
+  }
+  return names;
+}
+
 /// Why no pair counts: the values that no run has, or how many runs of each pipeline have them.
 std::string why_no_data(const ClaimQuantity& quantity, const ClaimPairs& pairs,
                         const StudyData& data) {
   if (pairs.all == 0) {
     return "the study has no runs yet";
   }
-  std::vector<std::string> columns = data.columns;
-  columns.emplace_back("solved");
   std::string words;
   for (const ClaimValue& value : quantity.values) {
-    if (std::find(columns.begin(), columns.end(), value.name) == columns.end()) {
-      words += (words.empty() ? "" : "; ") + std::string("no run has a value '") + value.name +
-               "'" + host::did_you_mean(value.name, columns);
+    const std::vector<std::string> own = values_of(value.pipeline, data);
+    if (std::find(own.begin(), own.end(), value.name) == own.end()) {
+      const bool has_any = data.column(value.name) < data.columns.size();
+      words += (words.empty() ? "no run" : "; no run") +
+               (has_any ? " of '" + data.pipelines[value.pipeline].name + "'" : "") +
+               " has a value '" + value.name + "'" + host::did_you_mean(value.name, own);
     }
   }
   if (words.empty()) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace altiplan::study {
 namespace {
@@ -159,6 +160,44 @@ std::string why_no_value(const std::string& name, const std::vector<std::string>
          (nearest.empty()
               ? ""
               : "; did you mean '" + (before.empty() ? "" : before + ".") + nearest + "'?");
+}
+
+std::string why_no_part(const std::string& name, const std::vector<PipelineParts>& pipelines) {
+  constexpr std::string_view kSteps = "steps.";
+  const bool is_of_step = name.starts_with(kSteps);
+  const auto may_have = [&](const PipelineParts& pipeline) {
+    const auto is_its = [&](const std::string& step) {
+      return name.starts_with(std::string(kSteps) + step + ".");
+    };
+    return !pipeline.is_known ||
+           (is_of_step ? std::any_of(pipeline.steps.begin(), pipeline.steps.end(), is_its)
+                       : pipeline.flies);
+  };
+  if ((!is_of_step && !name.starts_with("flight.")) ||
+      std::any_of(pipelines.begin(), pipelines.end(), may_have)) {
+    return "";
+  }
+  const bool is_one = pipelines.size() == 1;
+  const std::string who = is_one ? "it has no " : "no pipeline has a ";
+  const std::string why = "no run" + (is_one ? " of '" + pipelines[0].name + "'" : "") +
+                          " has a value '" + name + "': " + who;
+  if (!is_of_step) {
+    return why + "fly step";
+  }
+  std::set<std::string> steps;
+  for (const PipelineParts& pipeline : pipelines) {
+    steps.insert(pipeline.steps.begin(), pipeline.steps.end());
+  }
+  const std::size_t end = std::min(name.find('.', kSteps.size()), name.size());
+  const std::string step = name.substr(kSteps.size(), end - kSteps.size());
+  const std::string near = nearest_name(step, {steps.begin(), steps.end()});
+  std::string all;
+  for (const std::string& one : steps) {
+    all += (all.empty() ? "" : ", ") + one;
+  }
+  return why + "step '" + step + "'" +
+         (near.empty() ? ", only " + all
+                       : "; did you mean '" + std::string(kSteps) + near + name.substr(end) + "'?");
 }
 
 bool is_own_metric(const std::string& name) {

@@ -20,6 +20,16 @@ RunValues values_of(const host::Json& result);
 /// The error message for a name that no run can have a value of, with the nearest valid name; ""
 /// if a run may have it. `metrics`: names of objectives that routes are measured by.
 std::string why_no_value(const std::string& name, const std::vector<std::string>& metrics = {});
+/// The parts of a pipeline that values of its runs are named by.
+struct PipelineParts {
+  std::string name;
+  std::vector<std::string> steps;  ///< ids
+  bool flies = false;
+  bool is_known = false;  ///< false: its file cannot be read
+};
+/// The error message for a value of a step, or of a flight, that none of these pipelines has, with
+/// the nearest step; "" if one may have it.
+std::string why_no_part(const std::string& name, const std::vector<PipelineParts>& pipelines);
 /// True if it is none that runs have without such metrics.
 bool is_own_metric(const std::string& name);
 }  // namespace altiplan::study

@@ -275,17 +275,22 @@ class StudyMetrics {
   const std::vector<fs::path>& plugin_path_;
 };
 
-void check_metrics(const StudyPlan& plan, const Value& tree, StudyProblems& problems) {
+void check_metrics(const StudyPlan& plan, const std::vector<PipelineParts>& parts,
+                   const Value& tree, StudyProblems& problems) {
   const std::vector<std::string> own = own_metrics(plan);
   for (std::size_t i = 0; i < plan.file.metrics.size(); ++i) {
     const Value& at = tree.find("metrics")->items[i];
-    if (const std::string why = why_no_value(plan.file.metrics[i].name, own); !why.empty()) {
+    const std::string& name = plan.file.metrics[i].name;
+    std::string why = why_no_value(name, own);
+    why = why.empty() ? why_no_part(name, parts) : why;
+    if (!why.empty()) {
       problems.add(host::place_of(at, "name"), host::item("metrics", i) + ".name", why);
     }
   }
 }
 
-void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& problems) {
+void check_claims(const StudyPlan& plan, const std::vector<PipelineParts>& parts, const Value& tree,
+                  StudyProblems& problems) {
   std::vector<std::string> names;
   for (const Variant& pipeline : plan.pipelines) {
     names.push_back(pipeline.name);
@@ -308,7 +313,9 @@ void check_claims(const StudyPlan& plan, const Value& tree, StudyProblems& probl
       continue;
     }
     for (const ClaimValue& value : read_quantity(claim.that, names).values) {
-      if (const std::string why = why_no_value(value.name, own); !why.empty()) {
+      std::string why = why_no_value(value.name, own);
+      why = why.empty() ? why_no_part(value.name, {parts[value.pipeline]}) : why;
+      if (!why.empty()) {
         problems.add(host::place_of(at, "that"), path + ".that", why);
       }
     }
@@ -379,6 +386,34 @@ std::vector<std::string> own_metrics(const StudyPlan& plan) {
   return {names.begin(), names.end()};
 }
 
+std::vector<PipelineParts> parts_of(const StudyPlan& plan) {
+  std::vector<PipelineParts> all;
+  for (const Variant& variant : plan.pipelines) {
+    PipelineParts& parts = all.emplace_back();
+    parts.name = variant.name;
+    const Value tree = tree_of(variant, host::FileOfKey::pipeline);
+    const Value* steps = tree.find("steps");
+    parts.is_known = steps != nullptr && steps->kind == Value::Kind::list;
+    host::Ids ids;
+    const auto add = [&](const Value& at) {
+      host::StepEntry step;
+      parts.is_known = parts.is_known && bind(step, &at).problems.empty();
+      parts.flies = parts.flies || step.verb == host::Verb::fly;
+      const bool is_given = at.find("id") != nullptr;
+      parts.steps.push_back(is_given ? step.id : ids.free_id(step.id));
+      ids.insert(parts.steps.back());
+    };
+    for (std::size_t i = 0; parts.is_known && i < steps->items.size(); ++i) {
+      add(steps->items[i]);
+      const Value* others = steps->items[i].find("else");
+      for (std::size_t k = 0; others != nullptr && k < others->items.size(); ++k) {
+        add(others->items[k]);
+      }
+    }
+  }
+  return all;
+}
+
 StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVariants& variants,
                      const std::vector<fs::path>& plugin_path) {
   StudyPlan plan;
@@ -400,8 +435,9 @@ StudyPlan read_study(const fs::path& study, StudyProblems& problems, StudyVarian
   for (Variant& pipeline : plan.pipelines) {
     metrics.give(pipeline);
   }
-  check_metrics(plan, tree, problems);
-  check_claims(plan, tree, problems);
+  const std::vector<PipelineParts> parts = parts_of(plan);
+  check_metrics(plan, parts, tree, problems);
+  check_claims(plan, parts, tree, problems);
   const Budget budget(plan.file.budget, host::place_of(tree, "budget"), problems, variants);
   for (Variant& pipeline : plan.pipelines) {
     budget.give(pipeline);

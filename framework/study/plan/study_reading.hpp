@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/import_export/scenario_set.hpp"
+#include "study/model/run_values.hpp"
 #include "study/plan/study_plan.hpp"
 
 namespace altiplan::study {
@@ -23,6 +24,7 @@ class StudyProblems {
       all_.push_back(problem);
     }
   }
+  bool empty() const { return all_.empty(); }
   void finish() const {
     if (!all_.empty()) {
       throw ConfigError(all_);
@@ -65,6 +67,9 @@ class StudyVariants {
 StudyPlan read_study(const std::filesystem::path& study, StudyProblems& problems,
                      StudyVariants& variants,
                      const std::vector<std::filesystem::path>& plugin_path);
+
+/// The parts of each pipeline of the study, as far as its file can be read.
+std::vector<PipelineParts> parts_of(const StudyPlan& plan);
 
 /// Names of the objectives that runs of the study are measured by.
 std::vector<std::string> own_metrics(const StudyPlan& plan);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "host/base/words.hpp"
@@ -54,9 +55,35 @@ ReproducedFigure compare_sample(const ClaimQuantity& quantity, const JudgedClaim
   return result;
 }
 
+/// The documentation's figure; without one the form of the paper's, or of an own: a count of a
+/// share, otherwise four digits.
+PrintedFigure printed_of(const PaperFigure& figure, const ClaimQuantity& quantity,
+                         const JudgedClaim& found) {
+  for (const std::string& text : {figure.documentation, figure.paper}) {
+    if (const std::optional<PrintedFigure> printed = read_figure(text)) {
+      return *printed;
+    }
+  }
+  PrintedFigure own;
+  if (quantity.function == Function::share) {
+    own.form = PrintedFigure::Form::count;
+  } else if (std::isfinite(found.estimate) && found.estimate != 0) {
+    const int whole = int(std::floor(std::log10(std::abs(found.estimate)))) + 1;
+    own.estimate.decimals = std::clamp(4 - whole, 0, 12);
+  }
+  if (figure.of_claim && own.form == PrintedFigure::Form::number) {
+    own.low = own.high = own.estimate;
+  }
+  return own;
+}
+
 ReproducedFigure compare_verdict(const PaperFigure& figure, const JudgedClaim& found,
                                  Function function, bool is_sample) {
   ReproducedFigure result{&figure, std::string(name_of(found.verdict)), Mark::equal, ""};
+  if (figure.documentation.empty()) {
+    result.mark = Mark::none;
+    return result;
+  }
   const bool is_equal = result.here == figure.documentation;
   if (found.measured) {
     result.mark = Mark::time;
@@ -77,20 +104,31 @@ ReproducedFigure compare_verdict(const PaperFigure& figure, const JudgedClaim& f
 }  // namespace
 
 const char* name(Mark mark) {
-  constexpr const char* kNames[] = {"equal", "within", "time", "too few", "DIFFERS"};
+  constexpr const char* kNames[] = {"equal",   "within",  "time",
+                                    "too few", "DIFFERS", "not compared"};
   return kNames[std::size_t(mark)];
 }
 
 ReproducedFigure compare_figure(const StudyData& data, const PaperFigure& figure, bool is_sample) {
-  const JudgedClaim found = judge_claim(data, figure.claim);
+  JudgedClaim found = judge_claim(data, figure.claim);
   const ClaimQuantity quantity = quantity_of(data, figure.claim);
   if (figure.is_verdict) {
     return compare_verdict(figure, found, quantity.function, is_sample);
   }
-  const PrintedFigure printed = *read_figure(figure.documentation);
+  const PrintedFigure printed = printed_of(figure, quantity, found);
   const bool is_share = quantity.function == Function::share;
   const bool counts_pairs = printed.form == PrintedFigure::Form::count && !is_share;
+  if (is_share && printed.form == PrintedFigure::Form::count) {
+    // As the report's table of success: runs, which equal repetitions are too.
+    const ClaimPairs all = pairs_of(data, quantity, EqualRepetitions::count_each);
+    found.used = all.results.size();
+    found.estimate = mean(all.results);
+  }
   ReproducedFigure result{&figure, printed.of(found, is_share), Mark::equal, ""};
+  if (figure.documentation.empty()) {
+    result.mark = Mark::none;
+    return result;
+  }
   if (found.measured && !counts_pairs) {
     result.mark = Mark::time;
     return result;

@@ -26,10 +26,13 @@ void PaperRow::describe(Fields& f) {
   f("id", id).required().doc("name on the command line");
   f("what", what).required().doc("first cell of the row in the page's table");
   f("row", row).doc("text that replaces ROW, usually a pipeline (default: the id)");
-  f("paper", paper).doc("what the paper prints, by column; \"\" where it prints nothing");
+  f("paper", paper)
+      .doc(
+          "what the paper prints, for each column: 303, 54/100, or words in quotes; \"\": nothing");
   f("documentation", documentation)
-      .required()
-      .doc("what the page prints, by column: 303, 0.45, 92.6 %, 54/100; \"\": not compared");
+      .doc(
+          "what the page prints, by column: 303, 0.45, 92.6 %, 54/100; \"\": not compared; without "
+          "it all columns are shown, and none is compared");
 }
 
 void PaperClaim::describe(Fields& f) {
@@ -39,8 +42,7 @@ void PaperClaim::describe(Fields& f) {
   f("paper", paper).doc("the figure that the paper prints");
   f("verdict", verdict)
       .one_of({"holds", "fails", "undecided", "no data"})
-      .required()
-      .doc("verdict in the page");
+      .doc("verdict in the page; without it the verdict is shown, and not compared");
   f("measured", measured).doc("estimate in the page, with its interval: 0.674 [0.631, 0.722]");
 }
 
@@ -56,8 +58,8 @@ void PaperTable::describe(Fields& f) {
 
 void PaperFile::describe(Fields& f) {
   f("altiplan", altiplan).range(host::kFileFormat, host::kFileFormat).required().doc("file format");
-  f("title", title).doc("title for the user");
-  f("page", page).doc("page of the documentation");
+  f("title", title).doc("title for the user; default: none");
+  f("page", page).doc("page of the documentation with the tables, only named; default: none");
   f("runs", runs).min_items(1).required().doc("runs of studies");
   f("tables", tables).min_items(1).required().doc("tables of the page");
 }

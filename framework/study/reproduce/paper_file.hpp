@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,7 @@ struct PaperRow {
   std::string what;
   std::string row;  ///< replaces ROW; default: the id
   std::vector<std::string> paper;
-  std::vector<std::string> documentation;
+  std::optional<std::vector<std::string>> documentation;
   void describe(Fields& f);
 };
 
@@ -59,8 +60,8 @@ struct PaperTable {
 
 struct PaperFile {
   int altiplan = 0;
-  std::string title;
-  std::string page;
+  std::optional<std::string> title;
+  std::optional<std::string> page;
   std::vector<RunsChoice> runs;
   std::vector<PaperTable> tables;
   void describe(Fields& f);

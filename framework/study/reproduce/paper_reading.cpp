@@ -58,21 +58,26 @@ class Reading {
       problems_.add(problem);
     }
     problems_.finish();
+    for (const auto& [key, text] : {std::pair("title", &file_.title), {"page", &file_.page}}) {
+      if (*text && (*text)->empty()) {
+        problems_.add(host::place_of(tree, key), key,
+                      "is empty: give the " + std::string(key) + ", or leave the key out");
+      }
+    }
     paper_.path = file;
     paper_.name = name_of(file);
-    paper_.title = file_.title;
-    paper_.page = file_.page;
+    paper_.title = file_.title.value_or("");
+    paper_.page = file_.page.value_or("");
   }
 
   Paper read() {
     for (std::size_t i = 0; i < file_.runs.size(); ++i) {
       add_runs(file_.runs[i], tree_.find("runs")->items[i], host::item("runs", i));
     }
-    problems_.finish();
     for (std::size_t i = 0; i < file_.tables.size(); ++i) {
       add_table(file_.tables[i], tree_.find("tables")->items[i], host::item("tables", i));
     }
-    problems_.finish();
+    are_rows_known_ = problems_.empty();
     for (std::size_t i = 0; i < file_.runs.size(); ++i) {
       add_times(i, tree_.find("runs")->items[i], host::item("runs", i) + ".cpu_ms");
     }
@@ -99,10 +104,19 @@ class Reading {
     }
     PaperRuns& runs = paper_.runs.back();
     if (!studies_.contains(runs.study)) {
-      StudyProblems problems;
-      StudyVariants variants(problems);
-      studies_[runs.study] = read_study(runs.study, problems, variants, {});
-      problems.finish();
+      try {
+        StudyProblems problems;
+        StudyVariants variants(problems);
+        StudyPlan plan = read_study(runs.study, problems, variants, {});
+        problems.finish();
+        parts_[runs.study] = parts_of(plan);
+        studies_[runs.study] = std::move(plan);
+      } catch (const ConfigError& error) {
+        for (const Problem& problem : error.problems()) {
+          problems_.add(problem);
+        }
+        return;
+      }
     }
     const StudyPlan& study = studies_.at(runs.study);
     std::vector<std::string> known;
@@ -132,6 +146,10 @@ class Reading {
           "there are no runs " + excerpt(table.runs) + host::did_you_mean(table.runs, known));
       return;
     }
+    if (!studies_.contains(runs->study)) {
+      return;  // reported
+    }
+    check_columns(table, studies_.at(runs->study), at, path);
     ReproducibleRow row;
     row.heading = table.heading;
     row.source = table.source;
@@ -155,36 +173,102 @@ class Reading {
     const Value& columns = *table_at.find("columns");
     const std::string path = host::item(table_path + ".rows", index);
     check_id(entry.id, at, path);
-    if (std::all_of(entry.documentation.begin(), entry.documentation.end(),
-                    [](const std::string& text) { return text.empty(); })) {
-      problems_.add(host::place_of(at, "documentation"), path + ".documentation",
-                    "expected at least one figure, found none");
+    check_lists(entry, table.columns.size(), at, path);
+    const std::string text = entry.row.empty() ? entry.id : entry.row;
+    const std::string key = entry.row.empty() ? "id" : "row";
+    const std::string unknown = why_no_pipeline(table, text, row.runs);
+    if (!unknown.empty()) {
+      problems_.add(host::place_of(at, key), path + "." + key, unknown);
     }
-    for (const auto& [list, key] :
-         {std::pair(&entry.paper, "paper"), std::pair(&entry.documentation, "documentation")}) {
-      if (list->size() > table.columns.size()) {
-        problems_.add(host::place_of(at, key), path + "." + key,
-                      "expected at most " + std::to_string(table.columns.size()) +
-                          " figures, one for each column, found " + std::to_string(list->size()));
-      }
-    }
-    for (std::size_t c = 0; c < std::min(table.columns.size(), entry.documentation.size()); ++c) {
+    const std::size_t shown = entry.documentation
+                                  ? std::min(table.columns.size(), entry.documentation->size())
+                                  : table.columns.size();
+    for (std::size_t c = 0; c < shown; ++c) {
       PaperFigure figure;
       figure.name = table.columns[c].name;
-      figure.claim = {entry.id + " " + figure.name,
-                      with_row(table.columns[c].of, entry.row.empty() ? entry.id : entry.row),
-                      "== 0", kSampleConfidence};
+      figure.claim = {entry.id + " " + figure.name, with_row(table.columns[c].of, text), "== 0",
+                      kSampleConfidence};
       figure.paper = c < entry.paper.size() ? entry.paper[c] : "";
-      figure.documentation = entry.documentation[c];
-      if (figure.documentation.empty()) {
+      figure.documentation = entry.documentation ? (*entry.documentation)[c] : "";
+      if (entry.documentation && figure.documentation.empty()) {
         continue;
       }
-      check_printed(figure.documentation, at.find("documentation")->items[c].where,
-                    host::item(path + ".documentation", c));
-      add_figure(row, figure, host::place_of(columns.items[c], "of"),
-                 host::item(table_path + ".columns", c) + ".of");
+      if (entry.documentation) {
+        check_printed(figure.documentation, at.find("documentation")->items[c].where,
+                      host::item(path + ".documentation", c));
+      }
+      if (unknown.empty() && !wrong_columns_.contains(&table.columns[c])) {
+        add_figure(row, figure, host::place_of(columns.items[c], "of"),
+                   host::item(table_path + ".columns", c) + ".of");
+      }
     }
     paper_.rows.push_back(std::move(row));
+  }
+
+  /// Reports columns that have another word where ROW was meant, once for all rows.
+  void check_columns(const PaperTable& table, const StudyPlan& study, const Value& at,
+                     const std::string& path) {
+    std::vector<std::string> names = names_of(study.pipelines);
+    names.emplace_back("ROW");
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      const PaperColumn& column = table.columns[c];
+      try {
+        read_quantity(column.of, names);
+      } catch (const Error& error) {
+        const std::string why = error.what();
+        if (why.ends_with("did you mean 'ROW'?")) {
+          problems_.add(host::place_of(at.find("columns")->items[c], "of"),
+                        host::item(path + ".columns", c) + ".of", column.of + ": " + why);
+          wrong_columns_.insert(&column);
+        }
+      }
+    }
+  }
+
+  /// The error message for a row that stands for a pipeline and is none of the study; "" otherwise.
+  std::string why_no_pipeline(const PaperTable& table, const std::string& row, std::size_t runs) {
+    if (std::none_of(table.columns.begin(), table.columns.end(), [](const PaperColumn& column) {
+          return with_row(column.of, "ROW").find("ROW.") != std::string::npos;
+        })) {
+      return "";
+    }
+    try {
+      read_quantity("share(" + row + ".solved)",
+                    names_of(studies_.at(paper_.runs[runs].study).pipelines));
+    } catch (const Error& error) {
+      const std::string why = error.what();  // "at character 7: …"
+      return why.substr(why.find(": ") + 2);
+    }
+    return "";
+  }
+
+  void check_lists(const PaperRow& entry, std::size_t columns, const Value& at,
+                   const std::string& path) {
+    const std::size_t documented = entry.documentation ? entry.documentation->size() : columns;
+    if (entry.documentation && std::all_of(entry.documentation->begin(), entry.documentation->end(),
+                                           [](const std::string& text) { return text.empty(); })) {
+      problems_.add(host::place_of(at, "documentation"), path + ".documentation",
+                    "has no figure: give at least one, or leave the key out to compare none");
+    } else if (documented > columns) {
+      problems_.add(host::place_of(at, "documentation"), path + ".documentation",
+                    "expected at most " + std::to_string(columns) +
+                        " figures, one for each column, found " + std::to_string(documented));
+    }
+    const std::size_t needed = std::min(documented, columns);
+    if (!entry.paper.empty() && (entry.paper.size() < needed || entry.paper.size() > columns)) {
+      problems_.add(host::place_of(at, "paper"), path + ".paper",
+                    "expected " + std::to_string(needed) +
+                        " figures, one for each column, \"\" where the paper prints nothing; "
+                        "found " +
+                        std::to_string(entry.paper.size()));
+    }
+    for (std::size_t c = 0; c < entry.paper.size(); ++c) {
+      const Value& cell = at.find("paper")->items[c];
+      const bool is_words = cell.quoted && entry.paper[c].find_first_of("0123456789") != 0;
+      if (!is_words) {
+        check_printed(entry.paper[c], cell.where, host::item(path + ".paper", c));
+      }
+    }
   }
 
   void add_claim(ReproducibleRow row, const PaperClaim& entry, const Value& at,
@@ -208,6 +292,8 @@ class Reading {
     add_figure(row, figure, at.where, path);
     if (!entry.measured.empty()) {
       check_printed(entry.measured, host::place_of(at, "measured"), path + ".measured");
+    }
+    if (!entry.measured.empty() || entry.verdict.empty()) {
       figure = {"measured", *claim, true, false, "", entry.measured};
       add_figure(row, figure, at.where, path);
     }
@@ -243,7 +329,9 @@ class Reading {
     try {
       for (const ClaimValue& value : read_quantity(figure.claim.that, pipelines).values) {
         row.pipelines.insert(pipelines[value.pipeline]);
-        if (const std::string why = why_no_value(value.name, own); !why.empty()) {
+        std::string why = why_no_value(value.name, own);
+        why = why.empty() ? why_no_part(value.name, {parts_.at(study.path)[value.pipeline]}) : why;
+        if (!why.empty()) {
           problems_.add(where, key, of + why);
         }
       }
@@ -270,13 +358,16 @@ class Reading {
         problems_.add(entry.value.where, path + "." + entry.key,
                       "expected a time above 0 (ms), found " + entry.value.what());
       }
-      if (needed.erase(entry.key) == 0) {
+      if (are_rows_known_ && needed.erase(entry.key) == 0) {
+        const std::string near = nearest_name(entry.key, {needed.begin(), needed.end()});
         problems_.add(entry.where, path + "." + entry.key,
-                      "no row names this pipeline of the study, so it is not run");
+                      "no row names the pipeline " + excerpt(entry.key) +
+                          (near.empty() ? ", so it is not run" : "; did you mean '" + near + "'?"));
+        needed.erase(near);
       }
       runs.cpu_ms[entry.key] = ms;
     }
-    if (times.entries.empty()) {
+    if (times.entries.empty() || !are_rows_known_) {
       return;  // what they take is not told
     }
     for (const std::string& pipeline : needed) {
@@ -290,7 +381,10 @@ class Reading {
   Paper paper_;
   StudyProblems problems_;
   std::map<fs::path, StudyPlan> studies_;
+  std::map<fs::path, std::vector<PipelineParts>> parts_;  ///< by study
   std::set<std::string> ids_;
+  std::set<const PaperColumn*> wrong_columns_;  ///< reported
+  bool are_rows_known_ = false;                 ///< no problem in runs and tables
 };
 }  // namespace
 

@@ -17,9 +17,10 @@ enum class Mark {
   within,   ///< a sample: the documentation's figure lies in the sample's interval
   time,     ///< a time, which differs between machines
   too_few,  ///< a sample too small for an interval
-  differs
+  differs,
+  none  ///< the documentation has no figure
 };
-const char* name(Mark mark);  ///< "equal", "within", "time", "too few", "DIFFERS"
+const char* name(Mark mark);  ///< "equal", "within", "time", "too few", "DIFFERS", …
 
 struct ReproducedFigure {
   const PaperFigure* figure = nullptr;
