@@ -96,7 +96,9 @@ TEST_F(ConfigTest, WhatIsWrongWithSteps) {
 TEST_F(ConfigTest, WhatIsWrongWithAScenario) {
   const Case cases[] = {
       {"winds: 3\n", "s.yaml:5:1: winds: unknown key"},
-      {"environment: [{boks: {}}]\n", "s.yaml:5:16: environment.0: no library provides the"},
+      {"environment: [{boxx: {}}]\n",
+       "s.yaml:5:16: environment.0: no library provides the "
+       "environment 'boxx'; did you mean 'box'?"},
       {"environment: [{box: {min_m: [0, 0, 0]}}]\n",
        "s.yaml:5:21: environment.0.box: the key 'max_m' is missing: upper corner"},
       {"environment:\n  - box: {min_m: [0, 0, 0], max_m: [1, 1, 1]}\n    id: a\n"

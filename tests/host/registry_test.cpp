@@ -233,9 +233,10 @@ TEST_F(RegistryTest, SaysWhatIsPresentWhereNoLibraryOffersAName) {
   fs::copy(kBroken / "two_plugins.so", folder_ / "two.so");
   Registry registry({folder_, folder_ / "nowhere"});
   EXPECT_EQ(registry.offering("planner", "alpa"), nullptr);
-  const std::string text = text_of<Error>([&] { registry.get("planner", "alpa"); });
-  EXPECT_HAS(text, "no library provides the planner 'alpa'");
-  EXPECT_HAS(text, "did you mean 'alpha'");
+  EXPECT_EQ(text_of<Error>([&] { registry.get("planner", "alpa"); }),
+            "no library provides the planner 'alpa'; did you mean 'alpha'?");
+  const std::string text = text_of<Error>([&] { registry.get("planner", "nothing"); });
+  EXPECT_HAS(text, "no library provides the planner 'nothing'; present: alpha");
   EXPECT_HAS(text, folder_.string());
   EXPECT_HAS(text, "nowhere (no such folder)");
   EXPECT_EQ(text_of<PluginError>([&] { EXPECT_THROW(registry.get("planner", "alpa"), Error); }),

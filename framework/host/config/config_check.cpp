@@ -35,8 +35,14 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
         built_in += names.emplace_back(known.name);
       }
     }
-    built_in += did_you_mean(name, names);
-    problem(where, key, error.what() + built_in);
+    std::string why = error.what();
+    const std::string near = did_you_mean(name, names);
+    if (!near.empty()) {
+      why = why.substr(0, why.find("; ")) + near;  // one hint instead of the list
+    } else if (why.find("; did you mean ") == std::string::npos) {
+      why += built_in;
+    }
+    problem(where, key, why);
     return;
   }
   check_report(attributed([&] { return "describing the " + std::string(kind) + " '" + name + "'"; },

@@ -284,13 +284,15 @@ std::string Registry::not_offered(std::string_view kind, std::string_view name) 
       }
     }
   }
-  text += near.empty() ? "" : "; did you mean '" + near + "'?";
-  text += "; present: " + joined(present);
-  std::vector<std::string> searched;
-  for (const fs::path& folder : folders_) {
-    searched.push_back(folder.string() + (is_folder(folder) ? "" : " (no such folder)"));
+  if (near.empty()) {
+    std::vector<std::string> searched;
+    for (const fs::path& folder : folders_) {
+      searched.push_back(folder.string() + (is_folder(folder) ? "" : " (no such folder)"));
+    }
+    text += "; present: " + joined(present) + "; searched: " + joined(searched);
+  } else {
+    text += "; did you mean '" + near + "'?";
   }
-  text += "; searched: " + joined(searched);
   return text + (refused.empty() ? "" : "; refused: " + joined(refused));
 }
 }  // namespace altiplan::host

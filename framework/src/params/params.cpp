@@ -103,21 +103,27 @@ void Fields::check(bool condition, std::string_view sentence) {
 
 namespace {
 
+/// As a reader writes it: 1000000 and not 1e+06.
+std::string plain_text(double number) {
+  const bool is_whole = number == std::round(number) && std::abs(number) < 1e7;
+  return is_whole ? std::to_string(std::int64_t(number)) : number_text(number);
+}
+
 /// "from 0 to 1 m".
 std::string bounds_text(const FieldSpec& spec) {
   const std::string unit = spec.unit.empty() ? "" : " " + spec.unit;
   const bool bounded = std::isfinite(spec.max);
   if (spec.min == spec.max) {
-    return number_text(spec.min) + unit;
+    return plain_text(spec.min) + unit;
   }
   if (std::isfinite(spec.min) && bounded) {
-    return std::string(spec.above ? "more than " : "from ") + number_text(spec.min) +
-           (spec.above ? " and at most " : " to ") + number_text(spec.max) + unit;
+    return std::string(spec.above ? "more than " : "from ") + plain_text(spec.min) +
+           (spec.above ? " and at most " : " to ") + plain_text(spec.max) + unit;
   }
   if (bounded) {
-    return "at most " + number_text(spec.max) + unit;
+    return "at most " + plain_text(spec.max) + unit;
   }
-  return (spec.above ? "more than " : "at least ") + number_text(spec.min) + unit;
+  return (spec.above ? "more than " : "at least ") + plain_text(spec.min) + unit;
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -155,7 +161,7 @@ void Fields::finish() {
       continue;
     }
     problems_.push_back({number.where, number.key,
-                         "expected " + bounds_text(spec) + ", found " + number_text(number.value)});
+                         "expected " + bounds_text(spec) + ", found " + plain_text(number.value)});
   }
   for (const BoundField& field : bound_) {
     const FieldSpec& spec = field.spec;

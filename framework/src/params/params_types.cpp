@@ -382,11 +382,14 @@ FieldRef Fields::plugin(std::string_view kind, std::string& name, Value& paramet
     }
     if (found != nullptr) {
       const std::string near = nearest_name(entry.key, known_);
-      problems_.push_back(
-          {entry.where, key_of(entry.key),
-           "unknown key beside '" + found->key +
-               (near.empty() ? "': expected one " + std::string(kind) + " plugin, as NAME: {…}"
-                             : "'; did you mean '" + near + "'?")});
+      problems_.push_back({entry.where, key_of(entry.key),
+                           near == found->key
+                               ? "the " + std::string(kind) + " of this entry is '" + near +
+                                     "': write '" + near + "' for '" + entry.key + "'"
+                               : "unknown key beside '" + found->key +
+                                     (near.empty() ? "': expected one " + std::string(kind) +
+                                                         " plugin, as NAME: {…}"
+                                                   : "'; did you mean '" + near + "'?")});
     } else {
       found = &entry;
     }
