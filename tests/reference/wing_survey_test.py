@@ -23,19 +23,20 @@ JACKSBORO = pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif"
 MODELS = [(JACKSBORO, (-84.12125, 36.6554)), (DATA / "N44W072.hgt", (-71.2166667, 44.78125)),
           (DATA / "bigtujunga.tif", (-118.28954, 34.25279))]  # hills of 70 to 130 m
 FIELD = [(-270, -220), (230, -220), (280, 180), (-220, 140)]
+ISLAND = [(-30, -30), (30, -25), (10, 30)]
 WIND = 4
 TURN = 60
 
 
 class Wing(unittest.TestCase):
-    def survey(self, file, place, agl, *options, code=0, after=None):
+    def survey(self, file, place, agl, *options, code=0, after=None, islands=()):
         model = ground_peer.Model(file)
         middle = np.array(model.to_local(*place))
-        ring = [model.to_lonlat(*(middle + p), place) for p in [*FIELD, FIELD[0]]]
+        rings = [[model.to_lonlat(*(middle + p), place) for p in [*ring, ring[0]]] for ring in (FIELD, *islands)]
         with tempfile.TemporaryDirectory() as folder:
             area = pathlib.Path(folder) / "area.geojson"
             area.write_text(json.dumps({"type": "Feature", "properties": {},
-                                        "geometry": {"type": "Polygon", "coordinates": [ring]}}))
+                                        "geometry": {"type": "Polygon", "coordinates": rings}}))
             run = subprocess.run(
                 [PROGRAM, "survey", area, "--terrain", file, "--camera", "sony_a6000_16mm", "--agl", str(agl), "--wing",
                  str(TURN), "-o", "out", "--json", *options], cwd=folder, capture_output=True, text=True, check=False)
@@ -90,6 +91,15 @@ class Wing(unittest.TestCase):
         for file, place in MODELS:
             with self.subTest(file.name):
                 self.assertLess(self.measured(file, place, 300, False), self.measured(file, place, 300, True))
+
+    def test_islands(self):
+        """It turns away before them, and lines up anew behind them."""
+        for file, place in MODELS:
+            for wind in ([], ["--wind", f"{WIND},270"]):
+                with self.subTest(file.name, wind=wind):
+                    _, answer, _ = self.survey(file, place, 300, *wind, islands=[ISLAND])
+                    self.assertEqual(answer["verdict"], "pass")
+                    self.assertGreaterEqual(answer["coverage"], 0.98)
 
     def flown(self, folder, share, of="both"):
         """A simulated flight of the survey in its wind, all of it held to the scale within a share."""
