@@ -266,7 +266,7 @@ class Refusals(TuneCase):
 
     def test_a_metric_that_no_run_has(self):
         self.assertIn("did you mean 'length_m'?", self.refused(*X, metric="lenght_m", size=()))
-        self.assertIn("the run has no value 'flight.length_m'",
+        self.assertIn("no run of 'p' has a value 'flight.length_m': it has no fly step",
                       self.refused(*X, metric="flight.length_m"))
 
     def test_tuners_that_break_laws(self):
