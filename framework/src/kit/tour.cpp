@@ -27,6 +27,14 @@ struct TourDice {
 
 Tour::Tour(std::size_t pieces, std::vector<double> cost)
     : ends_(2 * pieces), cost_of_(std::move(cost)), near_(ends_) {
+  // Rounded otherwise one way than the other, a move and its reverse could both gain, for ever.
+  for (std::size_t a = 0; a < ends_; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      double& one = cost_of_[a * ends_ + b];
+      double& other = cost_of_[b * ends_ + a];
+      one = other = std::max(one, other);
+    }
+  }
   for (std::size_t end = 0; end < ends_; ++end) {
     std::vector<int>& near = near_[end];
     for (std::size_t other = 0; other < ends_; ++other) {

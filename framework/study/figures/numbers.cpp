@@ -123,10 +123,4 @@ std::string metric_label(std::string_view metric) {
   const std::string unit = metric_unit(metric);
   return metric_title(metric) + (unit.empty() ? "" : ", " + unit);
 }
-
-bool varies(std::string_view metric) {
-  const bool is_of_flight = metric == "time_s" || metric == "flight.time_s";
-  return (metric.ends_with("time_s") && !is_of_flight) || metric.ends_with("first_route_s") ||
-         metric.ends_with("memory_mb");
-}
 }  // namespace altiplan::study::report

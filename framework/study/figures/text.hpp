@@ -59,8 +59,6 @@ std::string metric_title(std::string_view metric);
 std::string metric_unit(std::string_view metric);
 /// "Plan time, s".
 std::string metric_label(std::string_view metric);
-/// True if the value is a measurement that varies between equal runs.
-bool varies(std::string_view metric);
 
 /// Natural order of numbered names: hills[seed=2] before hills[seed=10].
 bool natural_less(std::string_view a, std::string_view b);

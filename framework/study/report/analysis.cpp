@@ -319,7 +319,7 @@ Analysis analyse(const StudyData& data, bool times) {
     } else if (data.column(metric) < data.columns.size()) {
       analysis.metrics.push_back(MetricAnalyser(data, pairs, metric)());
     } else {
-      analysis.left_out.push_back(metric + (!times && varies(metric)
+      analysis.left_out.push_back(metric + (!times && is_measured(metric)
                                                 ? " is not compared: it varies between equal runs."
                                                 : " is not compared: no run has this value."));
     }

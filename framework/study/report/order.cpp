@@ -55,7 +55,7 @@ std::map<std::string, std::size_t> places_in(const StudyFile& file) {
 void drop_varying_columns(StudyData& data) {
   std::vector<std::size_t> kept;
   for (std::size_t at = 0; at < data.columns.size(); ++at) {
-    if (!varies(data.columns[at])) {
+    if (!is_measured(data.columns[at])) {
       kept.push_back(at);
     }
   }

@@ -112,7 +112,7 @@ std::vector<std::string> lacking(const Content& content) {
   const bool has_solved =
       std::any_of(rows.begin(), rows.end(), [](const RunRow& row) { return row.solved(); });
   for (const MetricChoice& metric : content.data.file.metrics) {
-    const bool is_left_out = !content.times && varies(metric.name);
+    const bool is_left_out = !content.times && is_measured(metric.name);
     if (has_solved && !is_left_out &&
         content.data.column(metric.name) == content.data.columns.size()) {
       sentences.push_back("No run has a value '" + printable(metric.name) +

@@ -6,6 +6,7 @@
 
 #include "altiplan/environment.hpp"
 #include "altiplan/flown_route.hpp"
+#include "altiplan/kit/tour.hpp"
 #include "altiplan/world.hpp"
 #include "support/posts.hpp"
 #include "support/support.hpp"
@@ -386,6 +387,25 @@ TEST(Cover, AnAeroplanesRowsAreOrderedInTheEnd) {
             ", outline_m: [" + ring + "], holes_m: [[[220, 180], [280, 185], [260, 240]]]}");
     const TaskOrder order = task->order(aeroplane(), {});
     EXPECT_EQ(order.status, PlanStatus::solved) << order.message;
+  }
+}
+
+/// A cost that is rounded one way otherwise than the other is no gain, there and back for ever.
+TEST(Tour, EndsOnCostsThatDifferByDirection) {
+  constexpr std::size_t kEnds = 24;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SplitMix64 random(seed);
+    std::vector<Vec3> at(kEnds);
+    std::generate(at.begin(), at.end(), [&] {
+      return Vec3(std::floor(4 * random.uniform()), std::floor(4 * random.uniform()), 0);
+    });
+    std::vector<double> cost(kEnds * kEnds);
+    for (std::size_t n = 0; n < cost.size(); ++n) {
+      cost[n] = (at[n / kEnds] - at[n % kEnds]).norm() + 1e-6 * random.uniform();
+    }
+    kit::Tour tour(kEnds / 2, std::move(cost));
+    tour.construct();
+    EXPECT_GT(tour.cost(), 0);
   }
 }
 
