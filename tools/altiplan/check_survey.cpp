@@ -21,17 +21,14 @@ using host::Json;
 constexpr double kOffLines = 3;
 /// An aeroplane, once it has lined up.
 constexpr double kWingOffLines = 10;
-constexpr int kAeroplane = 1;  ///< MAV_TYPE
+/// Of the ends of an aeroplane's lines, what does not count: its plan has items so near to them.
+constexpr double kWingEarly = 15;
 
 double off_lines(const host::FirstRoute& first) {
   return first.beyond_m() > 0 ? kWingOffLines : kOffLines;
 }
 
-/// Of the ends of an aeroplane's lines, what does not count.
-double unsure_m(const host::FirstRoute& first) {
-  constexpr double kEarly = 15;  // its plan has items so near to them
-  return first.beyond_m() > 0 ? kEarly : 0;
-}
+double unsure_m(const host::FirstRoute& first) { return first.beyond_m() > 0 ? kWingEarly : 0; }
 
 /// A line without so much at both ends; nothing where none is left.
 Polyline shortened(Polyline line, double metres) {
@@ -254,8 +251,11 @@ int check_shown(const std::string& file, const PlanCheck& options,
   const JudgedPlan judged = judged_plan(options, overrides);
   const World& world = judged.world.truth;
   Written written = written_in(file, world.frame());
-  if (judged.mission.vehicle_type == kAeroplane) {
+  const auto& autopilots = judged.report.autopilots;
+  if (!std::all_of(autopilots.begin(), autopilots.end(),
+                   [](const formats::Autopilot& one) { return one.is_copter(); })) {
     written.photos.off_m = std::max(written.photos.off_m, kWingOffLines);
+    written.unsure_m = std::max(written.unsure_m, kWingEarly);
   }
   find_lines(judged, written.photos);
   const std::size_t stretches = written.photos.lines.size();
@@ -266,6 +266,7 @@ int check_shown(const std::string& file, const PlanCheck& options,
     }
   }
   written.photos.lines = std::move(sure);
+  written.photos.begin_with_photo = written.unsure_m == 0;
   const double shown = host::share_shown(written.areas, written.photos, world);
   if (options.json) {
     std::cout << host::file_text({{"lines", stretches}, {"coverage", shown}});
@@ -316,6 +317,7 @@ host::PhotoLines photo_lines(const host::FirstRoute& first, const std::vector<Po
       photos.lines.push_back(std::move(shorter));
     }
   }
+  photos.begin_with_photo = unsure_m(first) == 0;
   return photos;
 }
 

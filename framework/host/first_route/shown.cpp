@@ -14,7 +14,7 @@ using Plane = Eigen::Vector2d;
 /// A part of a line that is straight in plan.
 struct Stretch {
   Polyline points;
-  bool begins_line = false;
+  bool begins_with_photo = false;
 
   Plane from() const { return points.front().head<2>(); }
   Plane way() const { return points.back().head<2>() - from(); }
@@ -39,11 +39,11 @@ struct Stretch {
   }
 };
 
-std::vector<Stretch> stretches_of(const std::vector<Polyline>& lines) {
+std::vector<Stretch> stretches_of(const std::vector<Polyline>& lines, bool begin_with_photo) {
   constexpr double kStraight = 1e-6;  // radians
   std::vector<Stretch> all;
   for (const Polyline& line : lines) {
-    all.push_back({{line.front()}, true});
+    all.push_back({{line.front()}, begin_with_photo});
     for (std::size_t i = 1; i < line.size(); ++i) {
       Polyline& points = all.back().points;
       if (points.size() > 1 && turn_angle_horizontal(points.back() - points[points.size() - 2],
@@ -61,7 +61,7 @@ std::vector<Stretch> stretches_of(const std::vector<Polyline>& lines) {
 /// The one at a line's end may come too soon after another for the camera.
 double nearest_photo(const Stretch& stretch, double trigger_m, double s, double length) {
   const double beside = std::max({-s, s - length, 0.0});
-  if (!stretch.begins_line) {
+  if (!stretch.begins_with_photo) {
     return length < trigger_m ? kInfinity : beside + trigger_m;
   }
   return s < 0 ? beside : s <= length - trigger_m ? trigger_m / 2 : beside + trigger_m;
@@ -128,7 +128,7 @@ double share_shown(const std::vector<formats::Polygon>& areas, const PhotoLines&
   const Vec3 size = box.max - box.min;
   const double cell =
       std::max({1.0, size.head<2>().maxCoeff() / 400, std::sqrt(size.x() * size.y() / kMaxCells)});
-  const std::vector<Stretch> stretches = stretches_of(photos.lines);
+  const std::vector<Stretch> stretches = stretches_of(photos.lines, photos.begin_with_photo);
   std::size_t cells = 0;
   std::size_t shown = 0;
   for (double y = box.min.y() + cell / 2; y < box.max.y(); y += cell) {

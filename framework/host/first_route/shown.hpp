@@ -16,7 +16,8 @@ struct PhotoLines {
   double trigger_m = 0;
   double half_across = 0;  ///< that a photo shows for each metre of height above what it shows
   double half_along = 0;
-  double off_m = 0;  ///< by which the camera may be off the lines, in each direction
+  double off_m = 0;              ///< by which the camera may be off the lines, in each direction
+  bool begin_with_photo = true;  ///< one at each line's beginning is certain
 };
 
 bool ring_holds(const formats::Ring& ring, const Eigen::Vector2d& p);

@@ -61,15 +61,18 @@ bool can_move(const formats::MissionCommand& command, const Vec3& by) {
          (by.z() == 0 || !is_end);  // a landing is flown to at the height of the item before
 }
 
-/// What speaks against flights beside the paths that are flown.
-std::size_t objections(const std::vector<FlownMission>& flights) {
-  std::size_t count = 0;
+/// What speaks against flights beside the paths that are flown: rules, and the commands that break
+/// them.
+Objections objections_to(const std::vector<FlownMission>& flights) {
+  Objections all;
   for (const FlownMission& flown : flights) {
-    count += std::size_t(
-        std::count_if(flown.remarks.begin(), flown.remarks.end(),
-                      [](const Remark& remark) { return remark.weight != Remark::Weight::note; }));
+    for (const Remark& remark : flown.remarks) {
+      if (remark.weight != Remark::Weight::note) {
+        all.emplace(remark.rule, remark.command);
+      }
+    }
   }
-  return count;
+  return all;
 }
 }  // namespace
 
@@ -78,7 +81,7 @@ Cures::Cures(const formats::MissionFile& plan, const World& world, Fly fly, cons
       world_(world),
       fly_(std::move(fly)),
       judge_(judge),
-      objections_(objections(fly_(plan_))) {}
+      objections_(objections_to(fly_(plan_))) {}
 
 std::string in_words(const Cure& cure, const std::string& item) {
   constexpr std::array kNames{"north", "north-east", "east", "south-east",
@@ -122,7 +125,8 @@ bool Cures::is_valid(const std::vector<Cure>& changes, std::size_t before, std::
   };
   try {
     const std::vector<FlownMission> flights = fly_(plan);
-    if (objections(flights) > objections_) {
+    const Objections now = objections_to(flights);
+    if (!std::includes(objections_.begin(), objections_.end(), now.begin(), now.end())) {
       return false;  // an autopilot refuses it, or it is no longer judged
     }
     for (const FlownMission& flown : flights) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Cure {
 std::string in_words(const Cure& cure, const std::string& item);
 
 /// How a mission is flown, by each who may fly it.
+using Objections = std::set<std::pair<std::string, std::size_t>>;
 using Fly = std::function<std::vector<FlownMission>(const formats::MissionFile&)>;
 
 /// Searches for changes of a mission with which it can be flown: each change is flown as a whole,
@@ -57,7 +59,7 @@ class Cures {
   const World& world_;
   Fly fly_;
   const BandJudge& judge_;
-  std::size_t objections_;  ///< remarks on the mission as it is
+  Objections objections_;  ///< to the mission as it is
   double work_ = 0;
   double max_work_ = kMaxWorkOfOne;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/return_cure.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "host/gate/returns.hpp"
@@ -94,16 +94,12 @@ class RallyCure {
     const std::size_t own = plan_.rally.size();
     ReturnsReport report = judge_returns(plan_, world_, options_);
     while (report.verdict != Verdict::pass) {
-      if (plan_.rally.size() >= maximum() || !add_one(report)) {
+      // What is not judged no point cures.
+      if (!report.unjudged.empty() || plan_.rally.size() >= maximum() || !add_one(report)) {
         return false;
       }
     }
-    for (std::size_t n = plan_.rally.size(); n-- > own;) {
-      MissionFile fewer = plan_;
-      fewer.rally.erase(fewer.rally.begin() + std::ptrdiff_t(n));
-      if (judge_returns(fewer, world_, options_).verdict == Verdict::pass) {
-        plan_ = std::move(fewer);
-      }
+    while (remove_one(own)) {
     }
     return true;
   }
@@ -115,6 +111,19 @@ class RallyCure {
     return autopilot_.is_px4() ? 32 : autopilot_.is_copter() ? 46 : 50;
   }
 
+  /// Removes one that is needless, behind the mission's own; false if there is none.
+  bool remove_one(std::size_t own) {
+    for (std::size_t n = plan_.rally.size(); n-- > own;) {
+      MissionFile fewer = plan_;
+      fewer.rally.erase(fewer.rally.begin() + std::ptrdiff_t(n));
+      if (judge_returns(fewer, world_, options_).verdict == Verdict::pass) {
+        plan_ = std::move(fewer);
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// Adds the best point for the longest stretch: the first that clears it, else the one that
   /// leaves least.
   bool add_one(ReturnsReport& report) {
@@ -123,19 +132,19 @@ class RallyCure {
         report.refused.begin(), report.refused.end(),
         [](const auto& a, const auto& b) { return a.to_s - a.from_s < b.to_s - b.from_s; });
     const double clears = before - (stretch.to_s - stretch.from_s + 1);
-    double least = before;
+    double minimum = before;
     ReturnsReport best;
     std::optional<MissionPoint> point;
     for (const MissionPoint& candidate : candidates(stretch.places)) {
       plan_.rally.push_back(candidate);
       ReturnsReport with = judge_returns(plan_, world_, options_);
       plan_.rally.pop_back();
-      if (const double left = refused_time(with); left < least) {
-        least = left;
+      if (const double left = refused_time(with); left < minimum) {
+        minimum = left;
         best = std::move(with);
         point = candidate;
       }
-      if (least <= clears) {
+      if (minimum <= clears) {
         break;
       }
     }

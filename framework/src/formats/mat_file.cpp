@@ -67,7 +67,11 @@ class MatReader {
     }
     std::memcpy(tag, rest.data(), sizeof tag);
     if (tag[0] >> 16 != 0) {  // a small one, within its tag
-      const Element element{tag[0] & 0xffff, rest.substr(4, std::min(tag[0] >> 16, 4U))};
+      const std::size_t size = tag[0] >> 16;
+      if (size > 4) {
+        fail_damaged();
+      }
+      const Element element{tag[0] & 0xffff, rest.substr(4, size)};
       rest.remove_prefix(8);
       return element;
     }

@@ -141,9 +141,17 @@ class Gentle {
     const Vec3& b = stations_[to];
     const bool keeps = world_.ground_gap(a, b) >= above_m_ - tolerance_m_ &&
                        world_.ground_gap_max(a, b) <= above_m_ + tolerance_m_;
-    if (keeps || to <= from + 1) {
+    if (keeps) {
       route.push_back(b);
       return;
+    }
+    if (to <= from + 1) {
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "the ground between (%.0f, %.0f) and (%.0f, %.0f) is too rough: %g m above it "
+                    "cannot be kept within %g m",
+                    a.x(), a.y(), b.x(), b.y(), above_m_, tolerance_m_);
+      throw Error(text);
     }
     std::size_t worst = (from + to) / 2;
     double off = 0;

@@ -155,18 +155,20 @@ class ArenaReader {
     Statement row = database_.prepare(
         "SELECT id, version, hostname, cpuinfo, date, seed, timelimit FROM experiments "
         "ORDER BY id");
+    std::set<double> limits_s;
     while (row.step()) {
       const std::string seed = row.text(5);
       std::from_chars(seed.data(), seed.data() + seed.size(), seeds_[row.integer(0)]);
-      if (is_alone) {
-        data_.file.budget.time_s = row.number(6);
-      }
+      limits_s.insert(row.is_null(6) ? 0 : row.number(6));
       StoredSession session;
       session.started = row.text(4);
       session.version = row.text(1);
       session.host = row.text(2);
       session.cpu = row.text(3).substr(0, row.text(3).find('\n'));
       data_.sessions.push_back(session);
+    }
+    if (is_alone && limits_s.size() == 1 && *limits_s.begin() > 0) {
+      data_.file.budget.time_s = *limits_s.begin();  // of all, or of none
     }
     if (is_alone) {
       data_.file.name = file_.stem().string();
@@ -216,7 +218,12 @@ class ArenaReader {
       sql += ", " + identifier(column);
     }
     Statement statement = database_.prepare(sql + " FROM runs ORDER BY id");
+    // Runs of one planner in several databases are further repetitions.
     std::map<std::pair<std::size_t, std::size_t>, int> repetitions;
+    for (const RunRow& row : data_.rows) {
+      int& next = repetitions[{row.scenario, row.pipeline}];
+      next = std::max(next, int(row.repetition) + 1);
+    }
     bool costs_are_lengths = true;
     std::size_t added = 0;
     while (statement.step()) {

@@ -121,7 +121,7 @@ std::optional<Interval> mean_interval(double estimate, std::span<const double> d
   const double error = std::sqrt(squares / (n - 1) / n);
   const double t = student_quantile((1 + confidence) / 2, int(deviations.size()) - 1);
   Interval interval{estimate - error * t, estimate + error * t};
-  // Of its own variance, as small samples understate it, by simulation again a little more so.
+  // G1, and a little more: small samples understate skewness. The factor is by simulation.
   const double skewness =
       cubes / n / std::pow(squares / n, 1.5) * std::sqrt(n * (n - 1)) / (n - 2) * (1 + 4 / n);
   if (std::abs(skewness) > std::sqrt(6 / n) * (1 + 4 / n)) {

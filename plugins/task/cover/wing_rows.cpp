@@ -11,12 +11,14 @@
 namespace altiplan::cover {
 namespace {
 
+constexpr int kAcross = 8;       // samples across half of a strip
+constexpr double kShort = 1e-3;  // metres: no row
+
 /// Ends of the rows on a line, moved out to where the strip about it leaves the outline, and
 /// beyond.
 std::array<bool, 2> reach_out(const WingProblem& problem, const Area& outline, double y,
                               double& from, double& to) {
   constexpr double kSame = 1e-6;
-  constexpr int kSamples = 8;  // across half of the strip
   const auto parts = outline.along_row(y);
   const auto begins = [&](double x, bool at_end) {
     return std::any_of(parts.begin(), parts.end(), [&](const std::pair<double, double>& part) {
@@ -27,8 +29,8 @@ std::array<bool, 2> reach_out(const WingProblem& problem, const Area& outline, d
   const bool is_east_free = begins(to, true);
   const double west = from;
   const double east = to;
-  for (int k = -kSamples; k <= kSamples; ++k) {
-    const double beside = std::clamp(y + k * problem.spacing_m / 2 / kSamples,
+  for (int k = -kAcross; k <= kAcross; ++k) {
+    const double beside = std::clamp(y + k * problem.spacing_m / 2 / kAcross,
                                      outline.min().y() + kSame, outline.max().y() - kSame);
     for (const auto& [first, last] : outline.along_row(beside)) {
       if (last > west && first < east) {
@@ -52,15 +54,29 @@ std::vector<WingRow> rows_of(const WingProblem& problem, double angle) {
     const double height = area.max().y() - low;
     const int count = std::max(1, int(std::ceil(height / problem.spacing_m - 1e-9)));
     for (int i = 0; i < count; ++i) {
-      const double y = low + (i + 0.5) * height / count;
-      for (auto [from, to] : area.along_row(y)) {
-        if (to - from > 1e-3) {
-          std::array<bool, 2> leads{false, false};
-          if (problem.beyond_m > 0) {
-            leads = reach_out(problem, outline, y, from, to);
+      const double middle = low + (i + 0.5) * height / count;
+      std::vector<std::pair<double, double>> of_strip;
+      const auto add = [&](double y, double from, double to) {
+        std::array<bool, 2> leads = reach_out(problem, outline, y, from, to);
+        if (problem.beyond_m == 0) {
+          leads = {false, false};
+        }
+        of_strip.emplace_back(from, to);
+        rows.push_back(
+            {{turned({from, y}, -angle), turned({to, y}, -angle)}, {leads[0], leads[1]}});
+      };
+      // In the middle of the strip; then parts of it that no row passes, from there outward.
+      for (int k = 0; k <= 2 * kAcross; ++k) {
+        const int step = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
+        const double y = middle + step * height / count / 2 / kAcross;
+        for (const auto& [from, to] : area.along_row(y)) {
+          const bool is_passed = std::any_of(of_strip.begin(), of_strip.end(),
+                                             [&, first = from, last = to](auto& row) {
+                                               return row.first < last && row.second > first;
+                                             });
+          if (to - from > kShort && (k == 0 || !is_passed)) {
+            add(y, from, to);
           }
-          rows.push_back(
-              {{turned({from, y}, -angle), turned({to, y}, -angle)}, {leads[0], leads[1]}});
         }
       }
     }

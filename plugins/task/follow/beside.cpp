@@ -29,8 +29,8 @@ Vec3 turned(const Vec3& v, double angle) {
 /// Around a corner that turns by an angle away from the offset: corners of a polygon about the arc.
 void go_around(const Vec3& corner, const Vec3& side, double turn, Polyline& to) {
   const double radius = side.norm();
-  const double most = 2 * std::acos(radius / (radius + kBeyond));
-  const int parts = std::max(1, int(std::ceil(std::abs(turn) / most)));
+  const double maximum = 2 * std::acos(radius / (radius + kBeyond));
+  const int parts = std::max(1, int(std::ceil(std::abs(turn) / maximum)));
   const double step = turn / parts;
   for (int k = 0; k < parts; ++k) {
     to.push_back(corner + turned(side, (k + 0.5) * step) / std::cos(step / 2));
@@ -122,19 +122,27 @@ Polyline beside(const Polyline& line, double offset) {
     }
     return true;
   };
+  const auto refuse = [&](const Vec3& from, const Vec3& to) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%g m beside the line there is no way on from (%.1f, %.1f) to (%.1f, %.1f): "
+                  "the line comes near itself",
+                  offset, from.x(), from.y(), to.x(), to.y());
+    throw Error(text);
+  };
   Polyline route;
+  double left_out = 0;  // since the last leg that is kept
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (!keeps(points[i - 1], points[i])) {
+      left_out += (points[i] - points[i - 1]).norm();
       continue;
     }
+    if (route.empty() && left_out > 2 * std::abs(offset)) {
+      refuse(points.front(), points[i - 1]);
+    }
+    left_out = 0;
     if (!route.empty() && (points[i - 1] - route.back()).norm() > 2 * kNear) {
-      char text[160];
-      std::snprintf(text, sizeof text,
-                    "%g m beside the line there is no way on from (%.1f, %.1f) to (%.1f, %.1f): "
-                    "the line comes near itself",
-                    offset, route.back().x(), route.back().y(), points[i - 1].x(),
-                    points[i - 1].y());
-      throw Error(text);
+      refuse(route.back(), points[i - 1]);
     }
     if (route.empty()) {
       route.push_back(points[i - 1]);
@@ -148,6 +156,9 @@ Polyline beside(const Polyline& line, double offset) {
     char text[80];
     std::snprintf(text, sizeof text, "%g m beside the line each place is nearer to it", offset);
     throw Error(text);
+  }
+  if (left_out > 2 * std::abs(offset)) {
+    refuse(route.back(), points.back());
   }
   return route;
 }
