@@ -156,6 +156,13 @@ class Returns(PlanCase):
                 del before["rallyPoints"], cured["rallyPoints"]
                 self.assertEqual(cured, before)
 
+    def test_no_rally_points_for_what_is_not_judged(self):
+        """Of a VTOL no return is judged: that is said, and nothing written."""
+        self.returns((12, 22), self.beyond(), code=1)
+        _, err = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--fix-returns", "cured.plan", code=1)
+        self.assertIn("cured.plan: not written: found no rally points", err)
+        self.assertFalse((self.folder / "cured.plan").exists())
+
     def test_what_a_cure_is_written_to(self):
         self.returns(COPTER, self.beyond(), code=1)
         check = ("--terrain", "ridge.asc", "--returns", "--fix-returns")

@@ -255,6 +255,13 @@ class Benchmarks(StudyCase):
             shares = {row["pipeline"]: float(row["with_a_route"]) for row in csv.DictReader(stream)}
         self.assertEqual(shares["geometric_RRT"], 0.5, "its progress has no costs: it has a route when it ends")
 
+    def test_two_of_one_experiment(self):
+        """Their runs of one planner are further repetitions; limits of time that differ are none."""
+        other = self.benchmark("UPDATE experiments SET timelimit = 1;", "other.db")
+        rows = self.reported(self.benchmark(), other)
+        keys = [(row["pipeline"], row["repetition"]) for row in rows if row["pipeline"] == "geometric_RRT"]
+        self.assertEqual(sorted(keys), [("geometric_RRT", str(n)) for n in range(4)])
+
     def test_costs_that_are_no_lengths_are_not_mixed(self):
         rows = self.reported(self.benchmark("UPDATE runs SET best_cost = 3 WHERE id = 6;"))
         self.assertEqual([row["cost"] for row in rows], ["", "", "", "", "", "3"])

@@ -370,6 +370,42 @@ TEST(Cover, AnAeroplaneFliesStraightRowsBeyondTheArea) {
   }
 }
 
+/// Of a strip whose middle lies outside, or beyond a gap, each part has its row.
+TEST(Cover, AnAeroplaneCoversAreasWithArms) {
+  const Polyline corners{{0, 0, 0},     {400, 0, 0},    {400, 300, 0},  {600, 300, 0},
+                         {600, 160, 0}, {1000, 160, 0}, {1000, 400, 0}, {0, 400, 0}};
+  std::string ring;
+  for (const Vec3& p : corners) {
+    ring +=
+        (ring.empty() ? "[" : ", [") + std::to_string(p.x()) + ", " + std::to_string(p.y()) + "]";
+  }
+  for (const char* beyond : {"60", "0"}) {
+    const auto task = testing::make_task(
+        "cover", "{closed: false, spacing_m: 100, beyond_m: " + std::string(beyond) +
+                     ", outline_m: [" + ring + "]}");
+    const TaskOrder order = task->order(aeroplane(), {});
+    ASSERT_EQ(order.status, PlanStatus::solved) << order.message;
+    RandomStream random(4);
+    for (int n = 0; n < 20'000; ++n) {
+      const Vec3 p = random.in({{0, 0, 0}, {1000, 400, 0}});
+      bool is_within = false;
+      for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
+        const Vec3& a = corners[i];
+        const Vec3& b = corners[j];
+        is_within ^= (a.y() > p.y()) != (b.y() > p.y()) &&
+                     p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      }
+      EXPECT_TRUE(!is_within || std::any_of(order.passes.begin(), order.passes.end(),
+                                            [&](const Pass& pass) {
+                                              return point_leg_distance(p, pass.points.front(),
+                                                                        pass.points.back()) <=
+                                                     50 + 1e-6;
+                                            }))
+          << beyond << ": " << p.transpose();
+    }
+  }
+}
+
 /// Dubins's paths there and back are equal but for rounding, which local search must not chase.
 TEST(Cover, AnAeroplanesRowsAreOrderedInTheEnd) {
   RandomStream random(5);

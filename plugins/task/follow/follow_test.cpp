@@ -86,6 +86,11 @@ TEST(Follow, IsNowhereNearerThanItsOffset) {
                          "{height_m: 90, offsets_m: [30], line_m: [[0, 0], [200, 0], [200, "
                          "200], [100, 200], [100, 20], [0, 20], [0, 300]]}"),
       Error);
+  // Nor is most of a line left out because its end comes back beside its beginning.
+  EXPECT_THROW(testing::make_task("follow",
+                                  "{height_m: 90, offsets_m: [30], line_m: [[-500, 0], [0, 0], "
+                                  "[1000, 0], [1000, 40], [500, 40]]}"),
+               Error);
 }
 
 /// A power line over hills: 30 m beside it, and within 2 m of 50 m above the ground.
@@ -112,6 +117,29 @@ TEST(Follow, KeepsItsHeightOverHills) {
     EXPECT_LE(world.ground_gap_max(pass[i - 1], pass[i]), 52 + 1e-6) << i;
     EXPECT_NEAR(away((pass[i - 1] + pass[i]) / 2, line), 30, 1) << i;
   }
+}
+
+/// Between two posts of what the line keeps its height above, a rock sticks out.
+TEST(Follow, RefusesGroundTooRoughForItsTolerance) {
+  constexpr int kPosts = 200;
+  std::vector<float> heights(kPosts * kPosts, 300);
+  heights[std::size_t(60 * kPosts + 62)] = 310;
+  const World world = testing::world_of(std::make_shared<testing::Posts>(
+      HeightField({0, 0}, {1, 1}, kPosts, kPosts, std::move(heights))));
+  const auto refused = [&](double y) {
+    try {
+      const auto task =
+          testing::make_task("follow",
+                             "{line_m: [[20, " + std::to_string(y) + "], [180, " +
+                                 std::to_string(y) + "]], above_ground_m: 60, tolerance_m: 2}",
+                             world);
+      return task->order(aeroplane(), {}).status != PlanStatus::solved;
+    } catch (const Error&) {
+      return true;
+    }
+  };
+  EXPECT_FALSE(refused(100));
+  EXPECT_TRUE(refused(60));
 }
 
 TEST(Follow, RefusesWhatIsNoLine) {
