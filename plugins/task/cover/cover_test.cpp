@@ -445,6 +445,25 @@ TEST(Tour, EndsOnCostsThatDifferByDirection) {
   }
 }
 
+/// Dams a metre wide, between two stations of a row, are as much ground as hills are.
+TEST(Cover, AnAeroplaneKeepsItsHeightOverDams) {
+  constexpr int kPosts = 400;
+  std::vector<float> heights(kPosts * kPosts, 300);
+  for (int k = 0; k < kPosts; ++k) {
+    heights[std::size_t(162 * kPosts + k)] = heights[std::size_t(k * kPosts + 162)] = 310;
+  }
+  const World world = testing::world_of(std::make_shared<testing::Posts>(
+      HeightField({-100, -100}, {1, 1}, kPosts, kPosts, std::move(heights))));
+  const TaskOrder order =
+      testing::make_task("cover",
+                         "{closed: false, above_ground_m: 60, tolerance_m: 2, spacing_m: 40, "
+                         "beyond_m: 20, outline_m: [[0, 0], [200, 0], [200, 200], [0, 200]]}",
+                         world)
+          ->order(aeroplane(), {});
+  EXPECT_EQ(order.status, PlanStatus::no_route);
+  EXPECT_NE(order.message.find("is too rough"), std::string::npos) << order.message;
+}
+
 TEST(Cover, AnAeroplaneClimbsNoSteeperThanItCan) {
   constexpr int kPosts = 40;
   std::vector<float> heights;  // ridges from south to north: slopes of 25 % across

@@ -119,29 +119,6 @@ TEST(Follow, KeepsItsHeightOverHills) {
   }
 }
 
-/// Between two posts of what the line keeps its height above, a rock sticks out.
-TEST(Follow, RefusesGroundTooRoughForItsTolerance) {
-  constexpr int kPosts = 200;
-  std::vector<float> heights(kPosts * kPosts, 300);
-  heights[std::size_t(60 * kPosts + 62)] = 310;
-  const World world = testing::world_of(std::make_shared<testing::Posts>(
-      HeightField({0, 0}, {1, 1}, kPosts, kPosts, std::move(heights))));
-  const auto refused = [&](double y) {
-    try {
-      const auto task =
-          testing::make_task("follow",
-                             "{line_m: [[20, " + std::to_string(y) + "], [180, " +
-                                 std::to_string(y) + "]], above_ground_m: 60, tolerance_m: 2}",
-                             world);
-      return task->order(aeroplane(), {}).status != PlanStatus::solved;
-    } catch (const Error&) {
-      return true;
-    }
-  };
-  EXPECT_FALSE(refused(100));
-  EXPECT_TRUE(refused(60));
-}
-
 TEST(Follow, RefusesWhatIsNoLine) {
   EXPECT_NE(testing::parameter_problems("task", "follow", "{height_m: 9}"), "");
   EXPECT_NE(testing::parameter_problems("task", "follow", "{line_m: [[0, 0]], height_m: 9}"), "");
