@@ -294,6 +294,9 @@ class Benchmarks(StudyCase):
         self.assertIn("it has no runs", self.refused_report(self.benchmark("DELETE FROM runs;", "c.db")))
         self.assertIn("'time' is 'soon', expected a number",
                       self.refused_report(self.benchmark("UPDATE runs SET time = 'soon';", "d.db")))
+        for n, time_s in enumerate(("-1", "9e999")):
+            self.assertIn("the time of run 1 is none: expected seconds from 0",
+                          self.refused_report(self.benchmark(f"UPDATE runs SET time = {time_s};", f"f{n}.db")))
         self.assertIn("no columns 'solved' and 'time'", self.refused_report(
             self.benchmark("ALTER TABLE runs RENAME COLUMN time TO when_;", "e.db")))
 

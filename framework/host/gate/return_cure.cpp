@@ -95,7 +95,8 @@ class RallyCure {
     ReturnsReport report = judge_returns(plan_, world_, options_);
     while (report.verdict != Verdict::pass) {
       // What is not judged no point cures.
-      if (!report.unjudged.empty() || plan_.rally.size() >= maximum() || !add_one(report)) {
+      if (!report.unjudged.empty() || plan_.rally.size() >= maximum() || tried_ > kMaxTries ||
+          !add_one(report)) {
         return false;
       }
     }
@@ -136,6 +137,7 @@ class RallyCure {
     ReturnsReport best;
     std::optional<MissionPoint> point;
     for (const MissionPoint& candidate : candidates(stretch.places)) {
+      ++tried_;
       plan_.rally.push_back(candidate);
       ReturnsReport with = judge_returns(plan_, world_, options_);
       plan_.rally.pop_back();
@@ -212,11 +214,14 @@ class RallyCure {
     return middle;
   }
 
+  static constexpr int kMaxTries = 200;  ///< each takes up to a second
+
   MissionFile plan_;
   const Mission& world_;
   const GateOptions& options_;
   formats::Autopilot autopilot_;
   double home_z_ = 0;
+  int tried_ = 0;
 };
 }  // namespace
 

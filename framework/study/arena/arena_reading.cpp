@@ -244,6 +244,9 @@ class ArenaReader {
       for (std::size_t n = 0; n < columns_.size(); ++n) {
         values[columns_[n]] = number_or_nothing(statement, n + 3);
       }
+      if (const double time_s = at(values, "time"); time_s < 0 || std::isinf(time_s)) {
+        fail("the time of run " + std::to_string(row.id) + " is none: expected seconds from 0");
+      }
       take_outcome(row, values);
       take_values(row, values);
       const double length = at(values, "solution_length");
