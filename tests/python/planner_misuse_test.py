@@ -38,7 +38,7 @@ FAILS = {  # what plan does: what the result says, and its reason
     "return [request.goal, request.goal]": ("does not begin at the start", "contract_of_ends"),
     "return [request.start, request.start]": ("m from the goal, outside its tolerance",
                                               "contract_of_ends"),
-    "return [request.start, request.goal], {'expanded': 'many'}": ("threw: ValueError", "threw"),
+    "return [request.start, request.goal], {'expanded': 'many'}": ("threw: TypeError: the counter 'expanded': expected a whole number", "threw"),
     "return request.world.clearance([(1, 2)])": ("threw: ValueError", "threw"),
     "while True: pass": ("did not stop within half a second", "never_stopped"),
     "import signal, time\n"

@@ -149,7 +149,7 @@ class Study(StudyCase):
     def test_claims_that_so_few_runs_cannot_decide(self):
         self.study("claims: [{id: long, that: mean(straight.length_m), is: '>= 5'}]\n")
         said = self.call("--dry-run")
-        self.assertIn("claim long will be undecided: too few scenarios: at least 6 for 95 %", said)
+        self.assertIn("claim long will be undecided: too few scenarios: at least 10 for 95 %", said)
         self.assertEqual(said.count("will be"), 1)
         said = self.call("--dry-run", "--filter", "^none ")
         self.assertIn("claim long will have no data: no selected pair has runs of straight", said)

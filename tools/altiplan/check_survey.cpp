@@ -266,7 +266,7 @@ int check_shown(const std::string& file, const PlanCheck& options,
     }
   }
   written.photos.lines = std::move(sure);
-  written.photos.begin_with_photo = written.unsure_m == 0;
+  written.photos.early_m = 2 * written.unsure_m;  // taken where the camera is switched on
   const double shown = host::share_shown(written.areas, written.photos, world);
   if (options.json) {
     std::cout << host::file_text({{"lines", stretches}, {"coverage", shown}});
@@ -317,7 +317,7 @@ host::PhotoLines photo_lines(const host::FirstRoute& first, const std::vector<Po
       photos.lines.push_back(std::move(shorter));
     }
   }
-  photos.begin_with_photo = unsure_m(first) == 0;
+  photos.early_m = 2 * unsure_m(first);
   return photos;
 }
 

@@ -14,7 +14,7 @@ using Plane = Eigen::Vector2d;
 /// A part of a line that is straight in plan.
 struct Stretch {
   Polyline points;
-  bool begins_with_photo = false;
+  bool begins_line = false;
 
   Plane from() const { return points.front().head<2>(); }
   Plane way() const { return points.back().head<2>() - from(); }
@@ -39,11 +39,11 @@ struct Stretch {
   }
 };
 
-std::vector<Stretch> stretches_of(const std::vector<Polyline>& lines, bool begin_with_photo) {
+std::vector<Stretch> stretches_of(const std::vector<Polyline>& lines) {
   constexpr double kStraight = 1e-6;  // radians
   std::vector<Stretch> all;
   for (const Polyline& line : lines) {
-    all.push_back({{line.front()}, begin_with_photo});
+    all.push_back({{line.front()}, true});
     for (std::size_t i = 1; i < line.size(); ++i) {
       Polyline& points = all.back().points;
       if (points.size() > 1 && turn_angle_horizontal(points.back() - points[points.size() - 2],
@@ -57,14 +57,18 @@ std::vector<Stretch> stretches_of(const std::vector<Polyline>& lines, bool begin
 }
 
 /// Metres along the stretch from a place to the nearest photo that is certain: at the beginning of
-/// a line, and then at each trigger distance; after a corner nobody knows how much of that is left.
-/// The one at a line's end may come too soon after another for the camera.
-double nearest_photo(const Stretch& stretch, double trigger_m, double s, double length) {
-  const double beside = std::max({-s, s - length, 0.0});
-  if (!stretch.begins_with_photo) {
-    return length < trigger_m ? kInfinity : beside + trigger_m;
+/// a line, or somewhat before, and then at each trigger distance; after a corner nobody knows how
+/// much of that is left. The one at a line's end may come too soon after another for the camera.
+double nearest_photo(const Stretch& stretch, const PhotoLines& photos, double s, double length) {
+  const double trigger_m = photos.trigger_m;
+  if (!stretch.begins_line) {  // the first and the last are within a distance of the ends
+    return length < trigger_m ? kInfinity
+                              : std::max({trigger_m / 2, trigger_m - s, s - (length - trigger_m)});
   }
-  return s < 0 ? beside : s <= length - trigger_m ? trigger_m / 2 : beside + trigger_m;
+  const double beside = std::max({-s, s - length, 0.0});
+  return s < 0                     ? std::max(beside, photos.early_m)
+         : s <= length - trigger_m ? trigger_m / 2
+                                   : beside + trigger_m;
 }
 
 /// True if a photo of the stretch shows all within `radius` of a place whose ground is at most that
@@ -77,7 +81,7 @@ bool shows(const Stretch& stretch, const PhotoLines& photos, const Plane& place,
   const double s = length > 0 ? off.dot(way) / length : 0;
   const double aside =
       length > 0 ? std::abs(off.x() * way.y() - off.y() * way.x()) / length : off.norm();
-  const double along = nearest_photo(stretch, photos.trigger_m, s, length);
+  const double along = nearest_photo(stretch, photos, s, length);
   const double beyond = radius + photos.off_m;
   const double height = stretch.lowest(s - along, s + along) - photos.off_m - ground;
   return aside + beyond <= photos.half_across * height &&
@@ -128,7 +132,7 @@ double share_shown(const std::vector<formats::Polygon>& areas, const PhotoLines&
   const Vec3 size = box.max - box.min;
   const double cell =
       std::max({1.0, size.head<2>().maxCoeff() / 400, std::sqrt(size.x() * size.y() / kMaxCells)});
-  const std::vector<Stretch> stretches = stretches_of(photos.lines, photos.begin_with_photo);
+  const std::vector<Stretch> stretches = stretches_of(photos.lines);
   std::size_t cells = 0;
   std::size_t shown = 0;
   for (double y = box.min.y() + cell / 2; y < box.max.y(); y += cell) {

@@ -17,7 +17,7 @@ struct PhotoLines {
   double half_across = 0;  ///< that a photo shows for each metre of height above what it shows
   double half_along = 0;
   double off_m = 0;              ///< by which the camera may be off the lines, in each direction
-  bool begin_with_photo = true;  ///< one at each line's beginning is certain
+  double early_m = 0;  ///< by how much the first photo of each line may come before its beginning
 };
 
 bool ring_holds(const formats::Ring& ring, const Eigen::Vector2d& p);

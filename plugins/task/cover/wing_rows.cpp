@@ -65,17 +65,20 @@ std::vector<WingRow> rows_of(const WingProblem& problem, double angle) {
         rows.push_back(
             {{turned({from, y}, -angle), turned({to, y}, -angle)}, {leads[0], leads[1]}});
       };
-      // In the middle of the strip; then parts of it that no row passes, from there outward.
+      // In the middle of the strip; then in arms of the outline that no row passes, from there
+      // outward.
       for (int k = 0; k <= 2 * kAcross; ++k) {
         const int step = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
         const double y = middle + step * height / count / 2 / kAcross;
-        for (const auto& [from, to] : area.along_row(y)) {
-          const bool is_passed = std::any_of(of_strip.begin(), of_strip.end(),
-                                             [&, first = from, last = to](auto& row) {
-                                               return row.first < last && row.second > first;
-                                             });
-          if (to - from > kShort && (k == 0 || !is_passed)) {
-            add(y, from, to);
+        const std::size_t known = of_strip.size();
+        for (const auto& arm : outline.along_row(y)) {
+          const bool is_passed = std::any_of(
+              of_strip.begin(), of_strip.begin() + std::ptrdiff_t(known),
+              [&](const auto& row) { return row.first < arm.second && row.second > arm.first; });
+          for (const auto& [from, to] : area.along_row(y)) {
+            if (!is_passed && to - from > kShort && from < arm.second && to > arm.first) {
+              add(y, from, to);
+            }
           }
         }
       }
