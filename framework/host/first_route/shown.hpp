@@ -16,7 +16,7 @@ struct PhotoLines {
   double trigger_m = 0;
   double half_across = 0;  ///< that a photo shows for each metre of height above what it shows
   double half_along = 0;
-  double off_m = 0;              ///< by which the camera may be off the lines, in each direction
+  double off_m = 0;    ///< by which the camera may be off the lines, in each direction
   double early_m = 0;  ///< by how much the first photo of each line may come before its beginning
 };
 
