@@ -24,10 +24,10 @@ namespace altiplan::bench {
 namespace {
 
 constexpr int kRounds = 9;
-constexpr double kPassSeconds = 0.02;    ///< minimum time of a measurement
-constexpr double kFallen = 0.85;    ///< of the stored ratio
-constexpr std::size_t kLegs = 128;  ///< queries of a row that asks a world
-constexpr std::size_t kWays = 6;    ///< queries of a row that searches
+constexpr double kPassSeconds = 0.02;  ///< minimum time of a measurement
+constexpr double kFallen = 0.85;       ///< of the stored ratio
+constexpr std::size_t kLegs = 128;     ///< queries of a row that asks a world
+constexpr std::size_t kWays = 6;       ///< queries of a row that searches
 
 /// The sum of the answers to all queries of a row: both sides must agree, and neither is optimised
 /// away.
