@@ -20,8 +20,12 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kMaxBytes = 64'000'000;  // of a variable, inflated
 
-enum Type : std::uint32_t { kMatrix = 14, kCompressed = 15 };
-enum Class : std::uint8_t { kStructure = 2, kFirstNumbers = 6, kLastNumbers = 15 };
+// Types of elements, and classes of arrays.
+constexpr std::uint32_t kMatrix = 14;
+constexpr std::uint32_t kCompressed = 15;
+constexpr std::uint8_t kStructure = 2;
+constexpr std::uint8_t kFirstNumbers = 6;
+constexpr std::uint8_t kLastNumbers = 15;
 
 class MatReader {
  public:
