@@ -72,7 +72,7 @@ class Gentle {
       : world_(world), above_m_(above_m), tolerance_m_(tolerance_m), slope_(slope) {
     const OverGround over(world, above_m, tolerance_m);
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const Vec3 from = line[i == 0 ? 0 : i - 1];
+      const Vec3& from = line[i == 0 ? 0 : i - 1];
       const double length = (line[i] - from).head<2>().norm();
       const int parts = i == 0 ? 1 : std::max(1, int(std::ceil(length / kStation)));
       for (int k = 1; k <= parts; ++k) {
