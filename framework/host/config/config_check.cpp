@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include "altiplan/attributed.hpp"
-#include "host/base/built_in.hpp"
 #include "host/base/input.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/words.hpp"
@@ -27,22 +26,7 @@ void Checker::check_plugin(std::string_view kind, const std::string& name, const
   } catch (const MachineFault&) {
     throw;
   } catch (const Error& error) {
-    std::string built_in;
-    std::vector<std::string> names;
-    for (const PluginEntry& known : built_in_plugins()) {
-      if (kind == known.kind) {
-        built_in += names.empty() ? "; built in: " : ", ";
-        built_in += names.emplace_back(known.name);
-      }
-    }
-    std::string why = error.what();
-    const std::string near = did_you_mean(name, names);
-    if (!near.empty()) {
-      why = why.substr(0, why.find("; ")) + near;  // one hint instead of the list
-    } else if (why.find("; did you mean ") == std::string::npos) {
-      why += built_in;
-    }
-    problem(where, key, why);
+    problem(where, key, error.what());
     return;
   }
   check_report(attributed([&] { return "describing the " + std::string(kind) + " '" + name + "'"; },

@@ -11,6 +11,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan_build.hpp"
+#include "host/base/built_in.hpp"
 #include "host/base/install_root.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/scripts/script.hpp"
@@ -270,9 +271,16 @@ std::vector<fs::path> Registry::changed() {
 
 std::string Registry::not_offered(std::string_view kind, std::string_view name) const {
   const std::vector<std::string> present = names(kind);
+  std::vector<std::string> built_in;
+  for (const PluginEntry& entry : built_in_plugins()) {
+    if (entry.kind == kind) {
+      built_in.push_back(entry.name);
+    }
+  }
   std::string text =
       "no library provides the " + std::string(kind) + " '" + std::string(name) + "'";
-  const std::string near = nearest_name(name, present);
+  std::string near = nearest_name(name, built_in);
+  near = near.empty() ? nearest_name(name, present) : near;
   std::vector<std::string> refused;
   for (const Library& library : libraries_) {
     if (!library.refused.empty()) {
@@ -289,7 +297,8 @@ std::string Registry::not_offered(std::string_view kind, std::string_view name) 
     for (const fs::path& folder : folders_) {
       searched.push_back(folder.string() + (is_folder(folder) ? "" : " (no such folder)"));
     }
-    text += "; present: " + joined(present) + "; searched: " + joined(searched);
+    text += "; present: " + joined(present) + "; searched: " + joined(searched) +
+            (built_in.empty() ? "" : "; built in: " + joined(built_in));
   } else {
     text += "; did you mean '" + near + "'?";
   }
