@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "host/base/words.hpp"
 #include "progress.hpp"
 #include "study/compare/compare.hpp"
 #include "study/compare/origin.hpp"
@@ -144,19 +145,9 @@ void print_origins(const study::Comparison& comparison, const study::StudyData& 
   print_more(changed.size());
 }
 
-/// "one, two, three and 4 more"
-std::string first_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kNamed = 3;
-  std::string words;
-  for (std::size_t n = 0; n < std::min(names.size(), kNamed); ++n) {
-    words += (n == 0 ? "" : ", ") + names[n];
-  }
-  const std::size_t more = names.size() - std::min(names.size(), kNamed);
-  return words + (more > 0 ? " and " + std::to_string(more) + " more" : "");
-}
-
 /// "newly failing: astar city #0; beyond the tolerance: length_m of astar"
 std::string what_is_worse(const study::Comparison& comparison) {
+  constexpr std::size_t kNamed = 3;
   std::vector<std::string> runs;
   std::vector<std::string> metrics;
   for (const study::OutcomeChange& change : comparison.lost) {
@@ -167,9 +158,10 @@ std::string what_is_worse(const study::Comparison& comparison) {
       metrics.push_back(change.metric + " of " + change.pipeline);
     }
   }
-  std::string words = runs.empty() ? "" : "newly failing: " + first_of(runs);
+  std::string words = runs.empty() ? "" : "newly failing: " + host::listed(runs, kNamed);
   if (!metrics.empty()) {
-    words += (runs.empty() ? "" : "; ") + ("beyond the tolerance: " + first_of(metrics));
+    words +=
+        (runs.empty() ? "" : "; ") + ("beyond the tolerance: " + host::listed(metrics, kNamed));
   }
   return words;
 }

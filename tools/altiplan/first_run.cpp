@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kNamed = 4;  ///< zones in a sentence
+
 /// Names of the keep-out zones that the route enters, quoted.
 std::vector<std::string> zones_entered(const World& world, const Polyline& route) {
   std::vector<std::string> names;
@@ -40,18 +42,6 @@ std::vector<std::string> zones_entered(const World& world, const Polyline& route
     }
   }
   return names;
-}
-
-/// "'A', 'B' and 3 more"
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMaxNames = 4;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kMaxNames, names.size()); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  return names.size() > kMaxNames
-             ? text + " and " + std::to_string(names.size() - kMaxNames) + " more"
-             : text;
 }
 
 /// A route for a wish that asks for less; empty if there is none either.
@@ -78,7 +68,7 @@ std::vector<std::string> ends_in_zones(const host::Mission& mission) {
   const auto add = [&](const std::string& what, const Vec3& at) {
     const std::vector<std::string> names = zones_entered(mission.truth, {at, at});
     if (!names.empty()) {
-      sentences.push_back(what + " lies in " + listed(names));
+      sentences.push_back(what + " lies in " + host::listed(names, kNamed));
     }
   };
   add("the start", mission.request.start.position);
@@ -319,7 +309,8 @@ std::vector<std::string> reasons_of(const FailedTry& failed, Interrupt& interrup
   if (!route.empty()) {
     const std::vector<std::string> names = zones_entered(mission.truth, route);
     reasons.push_back("the zones close every way: without them a route of " + kilometres(route) +
-                      " is found" + (names.empty() ? "" : ", which enters " + listed(names)));
+                      " is found" +
+                      (names.empty() ? "" : ", which enters " + host::listed(names, kNamed)));
   }
   for (const double times : {1.5, 2.0, 3.0, 5.0, kInfinity}) {
     const double limit = std::ceil(times * failed.wish.max_above_ground_m.value_or(0));

@@ -40,6 +40,15 @@ std::string rounded_text(double number, int decimals) {
   return result == "-0" ? "0" : result;
 }
 
+std::string listed(const std::vector<std::string>& names, std::size_t maximum) {
+  std::string text;
+  for (std::size_t n = 0; n < std::min(names.size(), maximum); ++n) {
+    text += (n > 0 ? ", " : "") + names[n];
+  }
+  const bool are_more = names.size() > maximum;
+  return are_more ? text + " and " + std::to_string(names.size() - maximum) + " more" : text;
+}
+
 std::string with_commas(std::string digits) {
   const std::size_t end = std::min(digits.find('.'), digits.size());
   const std::size_t first = digits[0] == '-' ? 1 : 0;

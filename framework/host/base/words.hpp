@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "altiplan/geometry.hpp"
 
@@ -33,6 +34,9 @@ std::string readable(double number, int digits = 4);
 
 /// "1 pair", "2,000 pairs".
 std::string counted(std::size_t count, std::string_view what);
+
+/// "one, two and 3 more": so many names at most.
+std::string listed(const std::vector<std::string>& names, std::size_t maximum);
 
 /// "(12, 34, 56)", in whole metres, for messages.
 std::string place(const Vec3& p);

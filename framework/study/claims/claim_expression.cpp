@@ -3,12 +3,15 @@
 #include <utility>
 
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 #include "host/config/config_check.hpp"
 #include "study/claims/claim_reader.hpp"
 #include "study/claims/claims.hpp"
 
 namespace altiplan::study {
 namespace {
+
+constexpr std::size_t kListed = 8;  ///< variants in a message
 using Kind = ClaimExpression::Kind;
 
 /// The part of a name before its bracket.
@@ -177,10 +180,10 @@ class Expression {
     }
     if (std::find(variants.begin(), variants.end(), name) == variants.end()) {
       ClaimReader::fail(
-          at, name == id
-                  ? "'" + id + "' stands for " + std::to_string(variants.size()) +
-                        " variants; expected one of " + first_of(variants)
-                  : "no variant is named '" + name + "'; expected one of " + first_of(variants));
+          at, name == id ? "'" + id + "' stands for " + std::to_string(variants.size()) +
+                               " variants; expected one of " + host::listed(variants, kListed)
+                         : "no variant is named '" + name + "'; expected one of " +
+                               host::listed(variants, kListed));
     }
     return index_of(name);
   }
@@ -207,17 +210,6 @@ class Expression {
     }
     reader_.skip(length);
     return rest.substr(0, length);
-  }
-
-  static std::string first_of(std::vector<std::string> variants) {
-    constexpr std::size_t kListed = 8;
-    const std::size_t more = variants.size() > kListed ? variants.size() - kListed : 0;
-    variants.resize(variants.size() - more);
-    std::string text;
-    for (const std::string& name : variants) {
-      text += (text.empty() ? "" : ", ") + name;
-    }
-    return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
   }
 
   std::size_t index_of(const std::string& name) const {
