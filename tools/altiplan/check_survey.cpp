@@ -49,6 +49,16 @@ Polyline shortened(Polyline line, double metres) {
   return line;
 }
 
+/// Takes off the ends of lines where the camera may be off; the first photo is taken where it is
+/// switched on.
+void leave_out_ends(host::PhotoLines& photos, double unsure_m) {
+  for (Polyline& line : photos.lines) {
+    line = shortened(std::move(line), unsure_m);
+  }
+  std::erase_if(photos.lines, [](const Polyline& line) { return line.size() < 2; });
+  photos.early_m = 2 * unsure_m;
+}
+
 /// Makes a plan's surveys again and compares them with its items.
 int check_made_again(const std::string& file, bool as_json) {
   host::Json surveys = host::Json::array();
@@ -259,14 +269,7 @@ int check_shown(const std::string& file, const PlanCheck& options,
   }
   find_lines(judged, written.photos);
   const std::size_t stretches = written.photos.lines.size();
-  std::vector<Polyline> sure;
-  for (const Polyline& line : written.photos.lines) {
-    if (Polyline shorter = shortened(line, written.unsure_m); shorter.size() > 1) {
-      sure.push_back(std::move(shorter));
-    }
-  }
-  written.photos.lines = std::move(sure);
-  written.photos.early_m = 2 * written.unsure_m;  // taken where the camera is switched on
+  leave_out_ends(written.photos, written.unsure_m);
   const double shown = host::share_shown(written.areas, written.photos, world);
   if (options.json) {
     std::cout << host::file_text({{"lines", stretches}, {"coverage", shown}});
@@ -307,17 +310,12 @@ std::string with_survey(const std::string& plan, const host::FirstRoute& first,
   return json.dump(4, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-host::PhotoLines photo_lines(const host::FirstRoute& first, const std::vector<Polyline>& along) {
+host::PhotoLines photo_lines(const host::FirstRoute& first, std::vector<Polyline> along) {
   const host::SurveyLines& lines = first.lines();
   const double per_m = 0.5 / lines.above_ground_m;
-  host::PhotoLines photos{
-      {}, lines.trigger_m, per_m * lines.across_m, per_m * lines.along_m, off_lines(first)};
-  for (const Polyline& line : along) {
-    if (Polyline shorter = shortened(line, unsure_m(first)); shorter.size() > 1) {
-      photos.lines.push_back(std::move(shorter));
-    }
-  }
-  photos.early_m = 2 * unsure_m(first);
+  host::PhotoLines photos{std::move(along), lines.trigger_m, per_m * lines.across_m,
+                          per_m * lines.along_m, off_lines(first)};
+  leave_out_ends(photos, unsure_m(first));
   return photos;
 }
 

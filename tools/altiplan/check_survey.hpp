@@ -16,7 +16,7 @@ std::string with_survey(const std::string& plan, const host::FirstRoute& first, 
 /// What photos of a survey show of flat ground, by the metre of height, and how far the camera may
 /// be off its lines. An aeroplane may need their ends beyond the areas to line up, and to turn
 /// away.
-host::PhotoLines photo_lines(const host::FirstRoute& first, const std::vector<Polyline>& along);
+host::PhotoLines photo_lines(const host::FirstRoute& first, std::vector<Polyline> along);
 
 /// Makes the surveys of QGroundControl in a plan again and compares them with its items; or, with
 /// models, computes what the photos of one that with_survey wrote show of its areas. Returns the

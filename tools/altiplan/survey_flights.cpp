@@ -28,6 +28,7 @@ struct WingTry {
 constexpr WingTry kWingTries[] = {{0.5, true},  {0.7, true},  {0.3, true},
                                   {0.5, false}, {0.7, false}, {0.3, false}};
 constexpr double kWingLag = 5.4;
+constexpr const char* kScale = "scale";  ///< the rule that photos break
 
 /// The part of a pass that is photographed: without the leads of an aeroplane's row, its first and
 /// its last leg where they lie beyond the areas.
@@ -117,9 +118,10 @@ bool write_plans(const fs::path& folder, const SurveyArguments& arguments,
   return true;
 }
 
-/// Heights above ground on the ways between items, of an aeroplane on those that it photographs.
+/// Heights above ground on the ways between items, of an aeroplane on those that it photographs,
+/// where the scale is one more limit of its report.
 void find_heights(Flight& flight, const host::FirstRoute& first, bool is_wing) {
-  const host::PlanReport& report = flight.report;
+  host::PlanReport& report = flight.report;
   std::set<std::string> photographed;
   bool is_on = false;
   for (std::size_t n = 0; n < report.commands.size(); ++n) {
@@ -142,12 +144,20 @@ void find_heights(Flight& flight, const host::FirstRoute& first, bool is_wing) {
   const host::SurveyLines& lines = first.lines();
   const double low = lines.above_ground_m - lines.off_m;
   const double high = lines.above_ground_m + lines.off_m;
+  host::Finding finding;
+  finding.violation.constraint = kScale;
   if (is_wing && !unknown.empty()) {
-    flight.off_scale = *unknown.begin() + ": the scale of photos on the way to it is not judged";
+    finding.items = {*unknown.begin()};
+    finding.violation.message = "the scale of photos on the way to it is not judged";
+    finding.is_unjudged = true;
+    report.findings.push_back(std::move(finding));
   } else if (is_wing && !(flight.heights.lowest >= low && flight.heights.highest <= high)) {
-    flight.off_scale = "photos are taken from " + fixed(flight.heights.lowest, 1) + " to " +
-                       fixed(flight.heights.highest, 1) + " m above ground, not within " +
-                       fixed(low, 1) + " to " + fixed(high, 1) + " m";
+    finding.items = {"the survey"};
+    finding.violation.message = "photos are taken from " + fixed(flight.heights.lowest, 1) +
+                                " to " + fixed(flight.heights.highest, 1) +
+                                " m above ground, not within " + fixed(low, 1) + " to " +
+                                fixed(high, 1) + " m";
+    report.findings.push_back(std::move(finding));
   }
 }
 
@@ -155,10 +165,9 @@ void find_heights(Flight& flight, const host::FirstRoute& first, bool is_wing) {
 bool may_be_nearer(const Surveyed& surveyed) {
   bool is_off = false;
   for (const Flight& flight : surveyed.flights) {
-    is_off = is_off || !flight.off_scale.empty();
     for (const host::Finding& finding : flight.report.findings) {
       const std::string& broken = finding.violation.constraint;
-      if (broken == "altitude" || broken == "ground_clearance") {
+      if (broken == kScale || broken == "altitude" || broken == "ground_clearance") {
         is_off = true;
       } else if (broken != "energy") {
         return false;

@@ -33,7 +33,6 @@ struct Flight {
   std::string file;             ///< of the plan
   host::PlanReport report;
   host::LegHeights heights;  ///< above ground, where photos are taken, as they may be flown
-  std::string off_scale{};   ///< of an aeroplane: where they are off the tolerance; "" if nowhere
 };
 
 /// What is flown, and the verdict on it.
@@ -47,9 +46,8 @@ struct Surveyed {
   double shown = 0;  ///< share of the area
 
   bool passed() const {
-    return too_long.empty() && std::all_of(flights.begin(), flights.end(), [](const Flight& each) {
-             return each.report.passed() && each.off_scale.empty();
-           });
+    return too_long.empty() && std::all_of(flights.begin(), flights.end(),
+                                           [](const Flight& each) { return each.report.passed(); });
   }
   std::vector<Polyline> lines() const {
     std::vector<Polyline> all;
