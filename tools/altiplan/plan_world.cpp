@@ -85,42 +85,30 @@ double horizon_s(const PlanCheck& plan, const formats::MissionFile& mission) {
 
 /// The models, first the one below the most of the mission: it gives the world its frame. Throws
 /// Error for one that names no coordinate system, and none is given.
-std::vector<std::string> models_about(const PlanCheck& plan, const formats::MissionFile& mission,
-                                      const host::Overrides& overrides) {
-  std::vector<std::string> files = models_of(plan);
-  const auto is_text = [](const std::string& file) {
-    return std::filesystem::path(file).extension() == ".asc";
-  };
-  if (files.size() == 1 && (!plan.crs.empty() || !is_text(files.front()))) {
-    return files;
-  }
+std::vector<host::Tile> models_about(const PlanCheck& plan, const formats::MissionFile& mission,
+                                     const host::Overrides& overrides) {
   host::Registry registry(host::Registry::search_path(overrides.plugin_path));
-  const std::vector<LonLat> positions = positions_of(mission);
-  std::vector<std::pair<std::ptrdiff_t, std::string>> ranked;
-  for (const std::string& file : files) {
-    const host::Tile tile = [&] {
-      try {
-        return host::read_tile(file, plan.crs, registry);
-      } catch (const PluginError&) {
-        throw;
-      } catch (const Error& error) {
-        throw Error(std::string("--terrain: ") + error.what());
-      }
-    }();
-    if (plan.crs.empty() && !tile.crs.empty()) {
-      throw Error("--terrain: " + file +
+  host::RouteWish wish;
+  wish.terrain.assign(plan.terrain.begin(), plan.terrain.end());
+  if (!plan.crs.empty()) {
+    wish.crs = plan.crs;
+  }
+  std::vector<host::Tile> tiles = host::read_tiles(wish, registry);
+  for (const host::Tile& tile : tiles) {
+    if (plan.crs.empty() && !tile.crs.empty()) {  // guessed
+      throw Error("--terrain: " + tile.file.string() +
                   ": the file names no coordinate system: give --crs EPSG:CODE, EPSG:4326 for "
                   "longitude and latitude");
     }
-    ranked.emplace_back(std::count_if(positions.begin(), positions.end(),
-                                      [&](const LonLat& at) { return tile.holds(at[0], at[1]); }),
-                        file);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::transform(ranked.begin(), ranked.end(), files.begin(),
-                 [](const auto& one) { return one.second; });
-  return files;
+  const std::vector<LonLat> positions = positions_of(mission);
+  const auto held = [&](const host::Tile& tile) {
+    return std::count_if(positions.begin(), positions.end(),
+                         [&](const LonLat& at) { return tile.holds(at[0], at[1]); });
+  };
+  std::stable_sort(tiles.begin(), tiles.end(),
+                   [&](const host::Tile& a, const host::Tile& b) { return held(a) > held(b); });
+  return tiles;
 }
 
 /// The scenario that the options describe.
@@ -132,12 +120,12 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
                                 : "voids: fill_m, fill_m: " + host::exact_json_text(kClosed);
   std::string text = "altiplan: 1\nenvironment:\n";
   std::set<std::string> ids;
-  for (const std::string& file : models_about(plan, mission, overrides)) {
+  for (const host::Tile& model : models_about(plan, mission, overrides)) {
     std::string id = "terrain";
     while (!ids.insert(id).second) {
       id = "terrain " + std::to_string(ids.size() + 1);
     }
-    text += "  - terrain: {file: " + path_text(file) +
+    text += "  - terrain: {file: " + path_text(model.file.string()) +
             (plan.crs.empty() ? "" : ", crs: " + host::exact_json_text(plan.crs)) + ", " + voids +
             "}\n    id: " + host::exact_json_text(id) + "\n";
   }
