@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "host/base/words.hpp"
+
 namespace altiplan::host {
 namespace {
 

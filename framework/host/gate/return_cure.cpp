@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/gate/returns.hpp"
+#include "host/import_export/imported_route.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -83,10 +84,7 @@ class RallyCure {
   RallyCure(MissionFile plan, const Mission& world, const GateOptions& options,
             formats::Autopilot autopilot)
       : plan_(std::move(plan)), world_(world), options_(options), autopilot_(autopilot) {
-    const auto [x, y] = world.truth.frame().to_local(plan_.home->lon, plan_.home->lat);
-    home_z_ = plan_.home->frame == formats::AltitudeFrame::sea
-                  ? plan_.home->altitude_m
-                  : world.truth.ground(x, y).value_or(0) + plan_.home->altitude_m;
+    home_z_ = to_local(*plan_.home, std::nullopt, world.truth).z();
   }
 
   /// False if no points cure the returns.

@@ -340,14 +340,11 @@ void expect_in_frame(const Config& config, const Mission& mission) {
   const auto expect = [&](const Vec3& there, const Location& where, const std::string& key) {
     const LonLat lonlat = frame.to_lonlat(there.x(), there.y());
     if (!formats::are_in_frame({lonlat}, frame)) {
-      char line[96];
-      std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}",
-                    lonlat[0], lonlat[1]);
       throw ConfigError(where, key,
                         "lies more than 20 degrees from the origin of the world's frame, which its "
                         "first layer with a position gives: zones there are not known in it; put "
                         "a layer about the flight first, or give " +
-                            std::string(line));
+                            frame_about(lonlat));
     }
   };
   const Value& tree = config.scenario_tree;

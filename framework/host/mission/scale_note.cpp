@@ -31,6 +31,13 @@ Box flown_area(const Mission& mission) {
 }
 }  // namespace
 
+std::string frame_about(const LonLat& origin) {
+  char line[96];
+  std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}", origin[0],
+                origin[1]);
+  return line;
+}
+
 double note_scale(Mission& mission, const NoteSink& on_note) {
   const Frame& frame = mission.truth.frame();
   if (!frame.has_position()) {
@@ -44,11 +51,9 @@ double note_scale(Mission& mission, const NoteSink& on_note) {
   }
   if (error > 0.005) {
     const Vec3 middle = (area.min + area.max) / 2;
-    const auto [lon, lat] = frame.to_lonlat(middle.x(), middle.y());
-    char line[96];
-    std::snprintf(line, sizeof line, "frame: {crs: local, origin_lonlat: [%.3f, %.3f]}", lon, lat);
-    mission.warnings.push_back("lengths in the local frame are off by up to " + percent(error) +
-                               "; use one about the flight: " + line);
+    mission.warnings.push_back(
+        "lengths in the local frame are off by up to " + percent(error) +
+        "; use one about the flight: " + frame_about(frame.to_lonlat(middle.x(), middle.y())));
   }
   return error;
 }
