@@ -130,7 +130,8 @@ std::vector<SetScenario> read_barn(const fs::path& folder) {
   }
   return set;
 }
-constexpr const char* kMatPrefix = "terrainStruct_";
+
+constexpr std::string_view kMatPrefix = "terrainStruct_";
 
 /// A scenario of the MOEA benchmark. Its program puts the start on the ground, and an end below the
 /// ground cannot be reached.
@@ -159,7 +160,7 @@ SetScenario read_mat(const fs::path& file) {
     return exact_json_text(Json{at[0], at[1], at[2]});
   };
   const std::string stem = file.stem().string();
-  return {"map=" + (stem.starts_with(kMatPrefix) ? stem.substr(14) : stem),
+  return {"map=" + (stem.starts_with(kMatPrefix) ? stem.substr(kMatPrefix.size()) : stem),
           {{"environment.0.mat_terrain.file", exact_json_text(file.string())},
            {"start.at_m", end("start")},
            {"goal.at_m", end("end")}}};

@@ -126,7 +126,7 @@ class Order {
     pieces_ = rows_.size() + (has_ends_ ? 1 : 0);
     for (std::size_t i = 0; i < 2 * pieces_; ++i) {
       for (std::size_t j = 0; j < 2 * pieces_; ++j) {
-        costs_.push_back(cost(std::min(i, j), std::max(i, j)));  // equal both ways, to the bit
+        costs_.push_back(cost(i, j));
       }
     }
   }
