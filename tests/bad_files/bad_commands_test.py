@@ -30,7 +30,7 @@ class BadCommands(unittest.TestCase):
 
     def call(self, arguments):
         done = subprocess.run([PROGRAM, *shlex.split(arguments)], cwd=self.folder, text=True,
-                              capture_output=True, timeout=60, check=False)
+                              capture_output=True, timeout=600, check=False)
         return done.returncode, done.stdout, done.stderr
 
     def test_the_files_are_valid(self):

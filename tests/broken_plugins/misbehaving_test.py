@@ -44,7 +44,7 @@ def run(row):
              "--plugin-path", PLUGINS, "--plugin-path",
              os.path.join(os.path.dirname(PLUGINS), "broken_plugins")],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True, errors="replace", timeout=200,
+            text=True, errors="replace", timeout=600,
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CORE, (0, 0)))
         said = done.stderr
         wrong = []

@@ -36,7 +36,7 @@ def altiplan(*arguments):
     with tempfile.TemporaryDirectory(prefix="altiplan_bad_") as folder:
         done = subprocess.run([PROGRAM, *arguments], env={**os.environ, "TMPDIR": folder}, text=True,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, errors="replace", timeout=300)
+                              stderr=subprocess.PIPE, errors="replace", timeout=600)
         left = os.listdir(folder)
     if left:
         sys.exit("%s left %s in TMPDIR" % (arguments, left))

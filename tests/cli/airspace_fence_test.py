@@ -53,7 +53,7 @@ def closed(rings, lon, lat):
 
 class Airspace(unittest.TestCase):
     def altiplan(self, *arguments):
-        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=250,
+        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600,
                              check=False)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return run.stdout, run.stderr

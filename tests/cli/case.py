@@ -70,7 +70,7 @@ class CliCase(unittest.TestCase):
     def call(self, *arguments, code=0, stdout=subprocess.PIPE):
         """The program's output on stdout and on stderr; fails unless it ends with this code."""
         done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, stdout=stdout,
-                              stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=250)
+                              stderr=subprocess.PIPE, text=True, cwd=self.folder, timeout=600)
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
         return done.stdout, done.stderr
 

@@ -195,7 +195,7 @@ class Cli(CliCase):
                 self.assertIsNone(run.poll(), "ended by itself")
                 time.sleep(0.01)
             run.send_signal(signal.SIGINT)
-            self.assertEqual(run.wait(timeout=200), 130)
+            self.assertEqual(run.wait(timeout=600), 130)
         finally:
             run.kill()
         result = json.loads(self.read("result.json"))

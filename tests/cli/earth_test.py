@@ -92,7 +92,7 @@ class Earth(unittest.TestCase):
         file = self.folder / "mission.plan"
         file.write_text(json.dumps(plan))
         run = subprocess.run([PROGRAM, "check", str(file), "--terrain", str(model), "--json",
-                              *options], capture_output=True, text=True, timeout=60)
+                              *options], capture_output=True, text=True, timeout=600)
         self.assertIn(run.returncode, (0, 1), run.stderr)
         found = json.loads(run.stdout)
         self.assertEqual(found["verdict"] == "pass", run.returncode == 0)

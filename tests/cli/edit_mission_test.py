@@ -108,7 +108,7 @@ class EditMission(PlanCase):
                 ([self.plan], 2, "add --terrain"), ([self.plan, self.plan, *OPTIONS], 2, "alone"),
                 ([self.folder / "no.plan", *OPTIONS], 3, "no.plan"), ([kml, *OPTIONS], 3, "expected a .plan")):
             done = subprocess.run([PROGRAM, "edit", "--no-browser", *arguments], capture_output=True,
-                                  text=True, timeout=60, check=False)
+                                  text=True, timeout=600, check=False)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(sentence, done.stderr)
 

@@ -61,7 +61,7 @@ class Session:
         self.process.stdout.close()
         self.process.stderr.close()
 
-    def request(self, method, path, body=None, headers=None, timeout=60):
+    def request(self, method, path, body=None, headers=None, timeout=600):
         """The status and the answer to a request below the server's root."""
         connection = http.client.HTTPConnection(self.address.hostname, self.address.port,
                                                 timeout=timeout)

@@ -24,7 +24,7 @@ class Edit(EditCase):
     def run_of(self, pipeline):
         out = self.folder / "out.json"
         done = subprocess.run([PROGRAM, "run", pipeline, "--out", out], capture_output=True,
-                              text=True, timeout=60, check=False)
+                              text=True, timeout=600, check=False)
         self.assertIn(done.returncode, (0, 1), done.stderr)
         return json.loads(out.read_text())
 
@@ -151,7 +151,7 @@ class Edit(EditCase):
         self.assertEqual(len(copied["answers"]), 3)
         self.assertIn("different scenarios", subprocess.run(
             [PROGRAM, "edit", self.pipeline, pathlib.Path(SOURCES) / "configs/pipelines/city_astar.yaml"],
-            capture_output=True, text=True, timeout=60, check=False).stderr)
+            capture_output=True, text=True, timeout=600, check=False).stderr)
 
     def test_a_scenario_alone_and_a_result(self):
         self.pipeline.unlink()
@@ -161,7 +161,7 @@ class Edit(EditCase):
         self.assertIn("astar", made.read_text())
         out = self.folder / "r.json"
         subprocess.run([PROGRAM, "run", made, "--set", "scenario.goal.at_m=[900, 900, 60]", "--out", out],
-                       stdout=subprocess.DEVNULL, timeout=60, check=True)
+                       stdout=subprocess.DEVNULL, timeout=600, check=True)
         opened = self.begin(out)
         self.assertEqual(opened.edit()["answers"][0]["goal"]["at"], [900, 900, 60])
         opened.ask("save")
@@ -218,7 +218,7 @@ class Edit(EditCase):
         session.ask("save")
         self.run_of(self.pipeline)
         done = subprocess.run([PROGRAM, "export", self.folder / "out.json", "--to", "csv"],
-                              capture_output=True, timeout=60, check=True)
+                              capture_output=True, timeout=600, check=True)
         self.assertEqual(exported, done.stdout)
         session.edit()
         # What the page was opened with can be exported before anything is changed.
@@ -411,7 +411,7 @@ class Edit(EditCase):
                 (["nowhere.yaml"], 3, "nowhere.yaml"), ([], 2, "files"),
                 ([pathlib.Path(SOURCES) / "configs/studies/quick.yaml"], 3, "expected a pipeline")):
             done = subprocess.run([PROGRAM, "edit", "--no-browser", *arguments], capture_output=True,
-                                  text=True, timeout=60, check=False)
+                                  text=True, timeout=600, check=False)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(sentence, done.stderr)
 

@@ -25,7 +25,7 @@ GPX = "{http://www.topografix.com/GPX/1/1}"
 
 
 def altiplan(*arguments):
-    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=120,
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                           check=False)
     return done.returncode, done.stdout, done.stderr
 
@@ -205,7 +205,7 @@ class ByGdal(Flight):
         done = subprocess.run(
             ["ogr2ogr", "-f", "GeoJSON", "-lco", "COORDINATE_PRECISION=12", "--config",
              "GPX_ELE_AS_25D", "YES", path + ".out", path, *layer],
-            capture_output=True, text=True, timeout=60, check=False)
+            capture_output=True, text=True, timeout=600, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return [feature["geometry"]["coordinates"] for feature in
                 json.loads(text_of(path + ".out"))["features"]

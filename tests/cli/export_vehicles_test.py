@@ -19,7 +19,7 @@ GPX = "{http://www.topografix.com/GPX/1/1}"
 
 
 def altiplan(*arguments):
-    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=120,
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                           check=False)
     return done.returncode, done.stdout, done.stderr
 

@@ -54,7 +54,7 @@ class Fences(PlanCase):
         def go(start, goal):
             return subprocess.run(
                 [PROGRAM, "go", "--terrain", REPORTED / "dem.tif", "--from", start, "--to", goal, "--avoid",
-                 REPORTED / "only_a.plan"], cwd=self.folder, capture_output=True, text=True, timeout=60)
+                 REPORTED / "only_a.plan"], cwd=self.folder, capture_output=True, text=True, timeout=600)
         self.assertEqual(go("8.519,47.405", "8.521,47.405").returncode, 0)
         run = go("8.512,47.405", "8.528,47.405")
         self.assertEqual(run.returncode, 1, run.stdout + run.stderr)

@@ -36,7 +36,7 @@ class Fewest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def call(self, *arguments, code=0):
-        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120,
+        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600,
                              check=False)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout, run.stderr

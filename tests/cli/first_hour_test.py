@@ -35,7 +35,7 @@ class FirstHour(unittest.TestCase):
 
     def call(self, *arguments, code):
         done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
-                              timeout=60, check=False)
+                              timeout=600, check=False)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done.stdout + done.stderr
 

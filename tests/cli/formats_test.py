@@ -25,7 +25,7 @@ START = 1777629600  # 2026-05-01T10:00:00Z
 
 
 def altiplan(*arguments, code=0):
-    done = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120, check=False)
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=600, check=False)
     err = done.stderr.decode()
     assert done.returncode == code, f"{arguments}: {done.returncode}, not {code}: {err}"
     return done.stdout, err
@@ -293,7 +293,7 @@ class Formats(unittest.TestCase):
             for cut in (10, len(data) // 3, len(data) - 5):
                 path = self.file(name, data[:cut])
                 done = subprocess.run([PROGRAM, "check", "--route", path, "--scenario", scenario],
-                                      capture_output=True, text=True, timeout=60, check=False)
+                                      capture_output=True, text=True, timeout=600, check=False)
                 if name == "m.mcap" and cut == len(data) - 5:
                     continue  # behind the message
                 self.assertEqual(done.returncode, 3, f"{name} {cut} {done.stdout} {done.stderr}")

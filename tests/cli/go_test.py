@@ -49,7 +49,7 @@ class Go(unittest.TestCase):
 
     def call(self, *arguments, code=0):
         run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
-                             timeout=60)
+                             timeout=600)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout, run.stderr
 

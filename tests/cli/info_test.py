@@ -28,7 +28,7 @@ class Info(unittest.TestCase):
 
     def info(self, *files, code=0):
         run = subprocess.run([PROGRAM, "info", *files], cwd=self.folder, capture_output=True,
-                             text=True, timeout=60)
+                             text=True, timeout=600)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout if code == 0 else run.stdout + run.stderr
 
@@ -80,7 +80,7 @@ class Info(unittest.TestCase):
 
     def go(self, *arguments):
         run = subprocess.run([PROGRAM, "go", "--terrain", "model.asc", "-o", "out", *arguments],
-                             cwd=self.folder, capture_output=True, text=True, timeout=60)
+                             cwd=self.folder, capture_output=True, text=True, timeout=600)
         self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
         return run.stderr
 
@@ -118,7 +118,7 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
 """
         self.write("scenario.yaml", text)
         run = subprocess.run([PROGRAM, "validate", "scenario.yaml"], cwd=self.folder, text=True,
-                             capture_output=True, timeout=60)
+                             capture_output=True, timeout=600)
         self.assertEqual(run.returncode, 0, run.stderr)
 
     def test_airspace(self):

@@ -34,7 +34,7 @@ class Libraries(unittest.TestCase):
 
     def call(self, *arguments, code):
         done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, text=True, errors="replace",
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=600)
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
         return done
 

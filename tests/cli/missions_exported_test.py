@@ -26,7 +26,7 @@ class Missions(PlanCase):
 
     def altiplan(self, *arguments, code=0):
         run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
-                             timeout=60, check=False)
+                             timeout=600, check=False)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout, run.stderr
 

@@ -41,7 +41,7 @@ class PlanCase(unittest.TestCase):
 
     def call(self, *arguments, code):
         run = subprocess.run([PROGRAM, "check", *arguments], cwd=self.folder, capture_output=True,
-                             text=True, timeout=60)
+                             text=True, timeout=600)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout, run.stderr
 

@@ -63,7 +63,7 @@ class RenamedKeys(CliCase):
                        cwd=self.folder)
         self.call("validate", "former.yaml")
         done = subprocess.run([PROGRAM, "study", "study.yaml", "--dry-run"], cwd=self.folder,
-                              capture_output=True, text=True, check=False, timeout=60)
+                              capture_output=True, text=True, check=False, timeout=600)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 

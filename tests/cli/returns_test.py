@@ -400,7 +400,7 @@ class Referee(PlanCase):
 
     def told(self, arguments):
         run = subprocess.run([sys.argv[1], "check", *arguments], cwd=self.folder, capture_output=True, text=True,
-                             timeout=60)
+                             timeout=600)
         self.assertIn(run.returncode, (0, 1), run.stderr)
         return json.loads(run.stdout)
 

@@ -26,7 +26,7 @@ class Set(unittest.TestCase):
 
     def call(self, *arguments, code=0):
         done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True,
-                              text=True, timeout=60, check=False)
+                              text=True, timeout=600, check=False)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done.stdout + done.stderr
 

@@ -12,7 +12,7 @@ PROGRAM = sys.argv[1]
 
 
 def program(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60, check=True).stdout
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600, check=True).stdout
 
 
 class Shell(unittest.TestCase):
@@ -31,7 +31,7 @@ class Shell(unittest.TestCase):
         done = subprocess.run(
             ["bash", "--norc", "-c", 'source "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _altiplan; '
              'printf "%s\\n" "${COMPREPLY[@]}"', self.script("bash"), "altiplan", *words],
-            capture_output=True, text=True, timeout=60, check=True)
+            capture_output=True, text=True, timeout=600, check=True)
         self.assertEqual(done.stderr, "")
         return done.stdout.split()
 
@@ -59,7 +59,7 @@ class Shell(unittest.TestCase):
             self.skipTest("no zsh")
         done = subprocess.run(
             ["zsh", "-f", "-c", "autoload -Uz compinit; compinit -D -u; source $0; print $_comps[altiplan]",
-             self.script("zsh")], capture_output=True, text=True, timeout=60, check=False)
+             self.script("zsh")], capture_output=True, text=True, timeout=600, check=False)
         self.assertEqual((done.stdout.strip(), done.stderr), ("_altiplan", ""))
 
     def test_fish(self):
@@ -68,7 +68,7 @@ class Shell(unittest.TestCase):
 
         def complete(line):
             done = subprocess.run(["fish", "--no-config", "-c", 'source $argv[1]; complete -C $argv[2]',
-                                   self.script("fish"), line], capture_output=True, text=True, timeout=60,
+                                   self.script("fish"), line], capture_output=True, text=True, timeout=600,
                                   check=False, env={"HOME": str(self.folder), "PATH": "/usr/bin:/bin"})
             self.assertEqual(done.stderr, "")
             return [word.split("\t")[0] for word in done.stdout.splitlines()]
@@ -86,7 +86,7 @@ class Shell(unittest.TestCase):
             self.skipTest("no groff")
         for page in pages:
             done = subprocess.run(["groff", "-man", "-Tutf8", "-Kutf8", "-wall", "-z", str(page)],
-                                  capture_output=True, text=True, timeout=60, check=True)
+                                  capture_output=True, text=True, timeout=600, check=True)
             self.assertEqual(done.stderr, "", page.name)
 
 

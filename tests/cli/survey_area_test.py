@@ -74,7 +74,7 @@ class Survey(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def call(self, *arguments, code=0):
-        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout, run.stderr
 

@@ -14,7 +14,7 @@ class View(CliCase):
     def view(self, *arguments, code=0):
         """As call; there is no Chromium."""
         done = subprocess.run([PROGRAM, "view", *arguments], stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, cwd=self.folder, timeout=250,
+                              capture_output=True, text=True, cwd=self.folder, timeout=600,
                               env={**os.environ, "ALTIPLAN_CHROMIUM": "/nowhere"})
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
         return done.stdout, done.stderr
@@ -41,7 +41,7 @@ class View(CliCase):
             environment = {name: value for name, value in os.environ.items()
                            if name != "ALTIPLAN_CHROMIUM"}
             done = subprocess.run([PROGRAM, "view", "route.json", "--mp4", "film.mp4"],
-                                  capture_output=True, text=True, cwd=self.folder, timeout=60,
+                                  capture_output=True, text=True, cwd=self.folder, timeout=600,
                                   env={**environment, "PATH": self.path("bin")})
             self.assertEqual((done.returncode, done.stdout, done.stderr),
                              (3, "", f"altiplan: {said}\n"))
@@ -117,7 +117,7 @@ class View(CliCase):
             for value in (7, "text", [1], {"a": 1}, [[1, 2]], [{}]):
                 self.write("damaged.json", json.dumps({**result, key: value}))
                 done = subprocess.run([PROGRAM, "view", "damaged.json", "--svg", "damaged.svg"],
-                                      capture_output=True, text=True, cwd=self.folder, timeout=60)
+                                      capture_output=True, text=True, cwd=self.folder, timeout=600)
                 self.assertIn(done.returncode, (0, 3), (key, value, done.stderr))
         os.remove(damaged)
         for option in ("-o", "--png", "--svg"):

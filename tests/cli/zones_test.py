@@ -57,7 +57,7 @@ class Zones(unittest.TestCase):
 
     def call(self, *arguments, code=0):
         run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True,
-                             timeout=60)
+                             timeout=600)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout, run.stderr
 
@@ -72,7 +72,7 @@ class Zones(unittest.TestCase):
                                "start: {at_lonlat: [25.045, 60.025, 200]}")
         self.write("zones.yaml", inside)
         run = subprocess.run([PROGRAM, "run", "pipeline.yaml"], cwd=self.folder,
-                             capture_output=True, text=True, timeout=60)
+                             capture_output=True, text=True, timeout=600)
         self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
         self.assertRegex(run.stdout, r"the start .* cannot be flown: lies up to .*: 'hospital'")
 

@@ -95,7 +95,7 @@ class FlownCase(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def altiplan(self, *arguments, timeout=120):
+    def altiplan(self, *arguments, timeout=600):
         done = subprocess.run([self.program, *arguments], capture_output=True, text=True,
                               timeout=timeout, check=False)
         return done.returncode, done.stdout, done.stderr
@@ -142,7 +142,7 @@ class FlownCase(unittest.TestCase):
     def fly(self, result, vehicle, *options):
         """Exit code, the flight as written, and all output."""
         process = self.flying(result, vehicle, *options)
-        out, err = process.communicate(timeout=120)
+        out, err = process.communicate(timeout=600)
         self.assertTrue(os.path.exists(self.path("flown.json")), out + err)
         return process.returncode, self.flight(), out + err
 

@@ -134,7 +134,7 @@ class FlownMissions(Flight):
             run = subprocess.run(
                 [sys.argv[1], str(folder / "mission.waypoints"), kind, str(folder / "vehicle.param"),
                  "0" if kind == "plane" else "-", "-", str(folder / "track.csv")],
-                capture_output=True, text=True, timeout=60, check=False)
+                capture_output=True, text=True, timeout=600, check=False)
         self.assertEqual(run.returncode, 0, run.stderr)
         found = json.loads(run.stdout)
         self.assertGreater(found["flown_m"], 300)

@@ -297,7 +297,7 @@ class Ended(Fly):
                 _, out, err = self.altiplan("upload", other, "--to", vehicle.address,
                                             "--takeoff", "--land", "--home-altitude", "500")
                 self.assertIn("the vehicle is armed", out + err)
-                out, err = process.communicate(timeout=60)
+                out, err = process.communicate(timeout=600)
                 self.assertEqual(process.returncode, 1, out + err)
                 self.assertIn("another program has replaced the vehicle's mission", out)
 

@@ -27,7 +27,7 @@ goal: {at_m: [900, 500, 100], tolerance_m: 5}
 """
 
 
-def altiplan(*arguments, timeout=100):
+def altiplan(*arguments, timeout=600):
     done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=timeout,
                           check=False)
     return done.returncode, done.stdout, done.stderr

@@ -262,7 +262,7 @@ class Case:
 
     def altiplan(self, *arguments):
         done = subprocess.run([self.options.program, *arguments], capture_output=True, text=True,
-                              timeout=300, check=False)
+                              timeout=600, check=False)
         return done.returncode, done.stdout, done.stderr
 
 

@@ -15,7 +15,7 @@ def scene(program, result):
     with tempfile.TemporaryDirectory() as folder:
         page = os.path.join(folder, "page.html")
         subprocess.run([program, "view", result, "-o", page], check=True, capture_output=True,
-                       timeout=300)
+                       timeout=600)
         with open(page, encoding="utf-8") as file:
             text = file.read()
     begin = text.rindex("{", 0, text.index('"altiplan_scene"'))

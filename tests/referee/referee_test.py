@@ -27,7 +27,7 @@ class Folder(unittest.TestCase):
         self.folder = folder.name
 
     def altiplan(self, *arguments):
-        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=120,
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                               check=False)
         self.assertIn(done.returncode, (0, 1), done.stderr)
         return done.stdout

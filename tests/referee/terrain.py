@@ -146,7 +146,7 @@ def posts(path):
         with tempfile.TemporaryDirectory() as folder:
             grid = os.path.join(folder, "grid.asc")
             subprocess.run(["gdal_translate", "-q", "-of", "AAIGrid", "-co", "FORCE_CELLSIZE=NO",
-                            "-co", "DECIMAL_PRECISION=9", path, grid], check=True, timeout=120)
+                            "-co", "DECIMAL_PRECISION=9", path, grid], check=True, timeout=600)
             return posts(grid)
     header, heights = numbers_of(path)
     step = (header.get("dx", header.get("cellsize")), header.get("dy", header.get("cellsize")))

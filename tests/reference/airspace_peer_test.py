@@ -21,7 +21,7 @@ DAY = 86400
 def run(program, file, queries=()):
     lines = "".join("%.9f %.9f %.4f %.4f %.3f\n" % q for q in queries)
     done = subprocess.run([program, str(file)], input=lines, capture_output=True, text=True,
-                          timeout=120, check=False)
+                          timeout=600, check=False)
     assert done.returncode in (0, 1), (file, done.returncode, done.stderr)
     out = done.stdout.splitlines()
     if done.returncode == 1:

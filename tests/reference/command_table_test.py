@@ -43,7 +43,7 @@ def told(kind, command, folder):
     file = pathlib.Path(folder) / f"{kind}-{command}.plan"
     file.write_text(json.dumps(plan(kind, command)))
     run = subprocess.run([PROGRAM, "check", str(file), "--terrain", TERRAIN, "--json"], capture_output=True,
-                         text=True, timeout=120, check=False)
+                         text=True, timeout=600, check=False)
     if run.returncode not in (0, 1):
         return f"exit code {run.returncode}: {run.stderr}"
     answer = json.loads(run.stdout)

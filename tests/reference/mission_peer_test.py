@@ -265,7 +265,7 @@ def differences(case, answer):
 
 
 def judge(case, program, counts):
-    done = subprocess.run(case.command(program), capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(case.command(program), capture_output=True, text=True, timeout=600, check=False)
     counts["missions"] += 1
     if case.flight is None:
         counts["not read"] += 1

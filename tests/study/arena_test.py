@@ -41,7 +41,7 @@ class Arena(StudyCase):
 
     def write_arena(self, code, *stores, out="arena.db"):
         done = subprocess.run([self.program, "report", *stores, "--arena", self.path(out)],
-                              capture_output=True, text=True, timeout=60)
+                              capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stderr
 

@@ -99,7 +99,7 @@ class StudyCase(unittest.TestCase):
     def call(self, *arguments, code=0):
         """What the program printed on stdout and on stderr; it must end with this code."""
         done = subprocess.run([self.program, *map(str, arguments)], stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, cwd=self.folder, timeout=250,
+                              capture_output=True, text=True, cwd=self.folder, timeout=600,
                               env=self.environment)
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
         return done.stdout, done.stderr

@@ -55,7 +55,7 @@ def disk_of_the_store_fills_up(study, folder, expected):
         mount(disk, "size=40m")
         fill(disk, leave_kb << 10)
         process = study.start(store, "--jobs", jobs)
-        said = process.communicate(timeout=280)[0].decode(errors="replace")
+        said = process.communicate(timeout=600)[0].decode(errors="replace")
         expect(said, disk)
         there = sound_part(store, expected)
         if process.returncode == 0:  # what it stored made room for what it tried again

@@ -64,7 +64,7 @@ class Overwritten(unittest.TestCase):
         while not children(process.pid) and time.time() < until:
             time.sleep(0.01)
         change()
-        said = process.communicate(timeout=250)[0].decode(errors="replace")
+        said = process.communicate(timeout=600)[0].decode(errors="replace")
         self.assertEqual(process.returncode, 0, said)
         self.assertEqual([run[5] for run in runs(self.store)],
                          REPETITIONS * ["solved"] + REPETITIONS * ["timed_out"], said)

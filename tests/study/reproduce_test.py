@@ -292,7 +292,7 @@ class Reproduce(case.StudyCase):
                     self.assertIsNone(call.poll())
                     time.sleep(0.01)
                 call.send_signal(number)
-                self.assertEqual(call.wait(timeout=60), 130)
+                self.assertEqual(call.wait(timeout=600), 130)
                 self.assertEqual(os.listdir(temporary), [])
 
     def test_what_is_installed_is_valid(self):

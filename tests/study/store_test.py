@@ -51,7 +51,7 @@ class Stores(StudyCase):
         self.killed_while_it_writes("out.db", "hot.db")
         os.chmod(self.folder, 0o755)
         done = subprocess.run([self.program, "compare", "hot.db", "hot.db"], cwd=self.folder,
-                              capture_output=True, text=True, timeout=60, user=65534, group=65534,
+                              capture_output=True, text=True, timeout=600, user=65534, group=65534,
                               extra_groups=[])
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("was killed while writing", done.stderr)
@@ -97,7 +97,7 @@ class Stores(StudyCase):
         def limited(limit, most, *arguments):
             done = subprocess.run(
                 [self.program, *arguments], cwd=self.folder, capture_output=True, text=True,
-                timeout=60, preexec_fn=lambda: resource.setrlimit(limit, (most, most)))
+                timeout=600, preexec_fn=lambda: resource.setrlimit(limit, (most, most)))
             self.assertEqual(done.returncode, 3, (done.stdout, done.stderr))
             return done.stderr
 

@@ -47,7 +47,7 @@ class Study:
 
     def run(self, store, *more, code=0):
         process = self.start(store, *more)
-        said = process.communicate(timeout=280)[0].decode(errors="replace")
+        said = process.communicate(timeout=600)[0].decode(errors="replace")
         if process.returncode != code:
             raise AssertionError("exit code %d, not %d:\n%s" % (process.returncode, code, said))
         return said
@@ -56,7 +56,7 @@ class Study:
         """The files of a report without times, by name."""
         subprocess.run([self.program, "report", store, "-o", folder, "--no-times", "--plugin-path",
                         self.plugins], check=True, stdin=subprocess.DEVNULL,
-                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=280)
+                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600)
         files = {}
         for place, _, names in os.walk(folder):
             for name in names:

@@ -198,7 +198,7 @@ class Study(StudyCase):
             self.assertIsNone(first.poll())
             time.sleep(0.01)
         pipeline(0.3)
-        self.assertIn("have changed since the runs were planned", first.communicate(timeout=60)[1])
+        self.assertIn("have changed since the runs were planned", first.communicate(timeout=600)[1])
         self.assertEqual(first.returncode, 3)
         pipeline(0.2)
         self.call()

@@ -61,14 +61,14 @@ class TuneCase(unittest.TestCase):
 
     def tune(self, *words, expect=0, **options):
         done = subprocess.run(self.arguments(*words, **options), cwd=self.folder, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=250)
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=600)
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done.stdout + done.stderr
 
     def refused(self, *words, expect=3, **options):
         """The one sentence of a call that ends at once."""
         done = subprocess.run(self.arguments(*words, **options), cwd=self.folder, text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=250)
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=600)
         self.assertEqual((done.returncode, done.stdout), (expect, ""), done.stdout + done.stderr)
         if expect != 2:  # there a hint at --help follows
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)

@@ -57,7 +57,7 @@ class Labels(unittest.TestCase):
 
     def call(self, *arguments):
         done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, timeout=300)
+                              capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, 0, (arguments, done.stdout, done.stderr))
 
     def assert_labels(self, name, least, scrolls=False):

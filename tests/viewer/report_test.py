@@ -226,7 +226,7 @@ class Changed(Reports):
         self.change(scenario)
         try:
             done = subprocess.run([PROGRAM, "report", self.store, "-o", self.report], check=True,
-                                  capture_output=True, text=True, timeout=300)
+                                  capture_output=True, text=True, timeout=600)
         finally:
             with open(scenario, "w", encoding="utf-8") as file:
                 file.write(before)
@@ -248,7 +248,7 @@ class Changed(Reports):
         with open(os.path.join(self.report, "tables", "verdicts.md"), encoding="utf-8") as file:
             self.assertIn(part, file.read().replace("\\", ""))
         done = subprocess.run([PROGRAM, "report", self.store, "-o", self.report], check=True,
-                              capture_output=True, text=True, timeout=300)
+                              capture_output=True, text=True, timeout=600)
         self.assertTrue(done.stdout.startswith(part), done.stdout)
 
 

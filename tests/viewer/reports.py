@@ -22,7 +22,7 @@ NIGHTLY = bool(os.environ.get("ALTIPLAN_NIGHTLY"))
 
 def report(store, folder, *options):
     done = subprocess.run([PROGRAM, "report", store, "-o", folder, *options], check=False,
-                          capture_output=True, text=True, timeout=300)
+                          capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     return folder
 

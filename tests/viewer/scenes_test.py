@@ -62,7 +62,7 @@ class Real(Case):
 
     def call(self, *arguments, code=0):
         done = subprocess.run([PROGRAM, *arguments, "--plugin-path", PLUGINS], cwd=self.folder,
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=200)
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
         return done.stdout
 

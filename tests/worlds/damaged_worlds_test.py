@@ -196,7 +196,7 @@ class Damaged(unittest.TestCase):
         self.write("pipeline.yaml", b"altiplan: 1\nscenario: scenario.yaml\nsteps:\n  - plan: astar\n")
         process = subprocess.Popen([PROGRAM, "run", self.path("pipeline.yaml")],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=600)
         said = err.decode()
         self.assertEqual(process.returncode, 3, said + out.decode())
         self.assertEqual(out, b"")

@@ -86,7 +86,7 @@ def point(text):
 
 
 def altiplan(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=240,
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                           check=False)
 
 

@@ -348,7 +348,7 @@ class Program(unittest.TestCase):
         for arguments in (("--listen", "udpin", "0.0.0.0:0"), ("--peer", "192.0.2.1:14550"),
                           ("--listen", "tcp:127.0.0.1:0")):
             ended = subprocess.run([sys.executable, VEHICLE, *arguments], capture_output=True,
-                                   text=True, check=False, stdin=subprocess.DEVNULL, timeout=60)
+                                   text=True, check=False, stdin=subprocess.DEVNULL, timeout=600)
             self.assertNotEqual(ended.returncode, 0)
             self.assertIn("expected", ended.stderr)
             self.assertNotIn("Traceback", ended.stderr)
