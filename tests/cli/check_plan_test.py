@@ -38,6 +38,47 @@ class CheckPlan(PlanCase):
             points[2][2] += 0.2
             self.check(points, *bounds, code=0)
 
+    def test_lines_without_heights_are_put_above_the_ground(self):
+        near = [(-84.38, 36.48), (-84.379, 36.482), (-84.377, 36.485)]
+        line = {"type": "LineString", "coordinates": [list(point) for point in near]}
+        kml = "<kml><Placemark><LineString>{}<coordinates>{}</coordinates></LineString></Placemark></kml>"
+        without = {
+            "clamped.kml": kml.format("<altitudeMode>clampToGround</altitudeMode>",
+                                      " ".join(f"{lon},{lat},0" for lon, lat in near)),
+            "flat.kml": kml.format("", " ".join(f"{lon},{lat}" for lon, lat in near)),
+            "flat.gpx": "<gpx><rte>" + "".join(f'<rtept lat="{lat}" lon="{lon}"/>' for lon, lat in near) + "</rte></gpx>",
+            "flat.geojson": json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": {}, "geometry": line}]})}
+        above = {}
+        for name, text in without.items():
+            (self.folder / name).write_text(text)
+            _, err = self.call(name, "--terrain", TERRAIN, code=3)
+            self.assertRegex(err, rf"{name}: a route needs heights.*\(--agl METRES puts it above the ground\)")
+            out, _ = self.call(name, "--terrain", TERRAIN, "--agl", "80", "--json", code=0)
+            above[name] = json.loads(out)
+            out, _ = self.call(name, "--terrain", TERRAIN, "--agl", "80", "--min-agl", "81", code=1)
+            self.assertIn("the height above ground is", out)
+        written = kml.format("<altitudeMode>relativeToGround</altitudeMode>",
+                             " ".join(f"{lon},{lat},80" for lon, lat in near))
+        (self.folder / "written.kml").write_text(written)
+        out, _ = self.call("written.kml", "--terrain", TERRAIN, "--json", code=0)
+        for name, verdict in above.items():
+            for key in ("length_m", "time_s", "min_height_above_ground_m"):
+                self.assertEqual(verdict.get(key), json.loads(out).get(key), (name, key))
+        _, err = self.call("written.kml", "--terrain", TERRAIN, "--agl", "80", code=3)
+        self.assertIn("--agl is for a line without heights: this one has its own", err)
+        for autopilot in ("px4", "ardupilot"):  # PX4 takes no heights above the ground
+            done = subprocess.run([PROGRAM, "export", "clamped.kml", "--terrain", TERRAIN, "--agl", "80", "--takeoff",
+                                   "--autopilot", autopilot, "--vehicle", "copter", "-o", autopilot + ".plan"],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.call(autopilot + ".plan", "--terrain", TERRAIN, code=0)
+        two = json.loads(without["flat.geojson"])
+        two["features"].append(two["features"][0])
+        (self.folder / "two.geojson").write_text(json.dumps(two))
+        _, err = self.call("two.geojson", "--terrain", TERRAIN, "--agl", "80", code=3)
+        self.assertIn("expected one LineString as the route, found more", err)
+
     def test_zones_count_at_their_hours(self):
         ring = [[-84.31, 36.52], [-84.25, 36.52], [-84.25, 36.56], [-84.31, 36.56], [-84.31, 36.52]]
         zone = {"title": "test", "features": [{

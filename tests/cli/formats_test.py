@@ -282,7 +282,8 @@ class Formats(unittest.TestCase):
         altiplan("check", plan, "--terrain", TERRAIN)
         _, err = altiplan("export", path, "--terrain", TERRAIN, "--takeoff", "--vehicle", "plane", "-o",
                           os.path.join(self.folder, "plane.plan"), code=1)
-        self.assertIn("PX4 plane refuses a mission without a landing", err)
+        self.assertIn("flown as a plan: fail", err)
+        self.assertIn("where an aeroplane takes off depends on its runway", err)
         self.assertFalse(os.path.exists(os.path.join(self.folder, "plane.plan")))
 
     def test_damaged_files(self):

@@ -161,6 +161,7 @@ class Go(unittest.TestCase):
         self.assertEqual([(one["command"], one["params"][1]) for one in items[:2]], [(22, 0), (178, 15)])
         minutes = [float(re.search(r"check: pass, .*? to ([0-9.]+) min", out)[1]) for out in (slow, fast)]
         self.assertLess(minutes[1], 0.75 * minutes[0])
+        (self.folder / "less.param").write_text("AIRSPEED_MIN,18\nAIRSPEED_CRUISE,-5\n")
         (self.folder / "p.param").write_text("AIRSPEED_MIN,18\nAIRSPEED_CRUISE,22\nAIRSPEED_MAX,30\n")
         wing = ["go", *ends, "--wing", "80", "--speed", "22"]
         out, _ = self.call(*wing, "--wind", "5,0", "-o", "unknown", code=1)
@@ -171,7 +172,9 @@ class Go(unittest.TestCase):
                                     (["--wind", "12,3"], 3, "not less than the speed, 10 m/s"),
                                     (["--wind", "12"], 2, "expected M/S,DEGREES"),
                                     (["--wind", "3,361"], 2, "expected M/S,DEGREES"),
-                                    (["--params", "none.param"], 3, "none.param")):
+                                    (["--params", "none.param"], 3, "none.param"),
+                                    (["--wing", "80", "--speed", "22", "--params", "less.param"], 3,
+                                     "less.param:2: parameter AIRSPEED_CRUISE: expected more than 0")):
             _, err = self.call("go", *ends, *options, "-o", "none", code=code)
             self.assertIn(said, err)
         self.assertFalse((self.folder / "none").exists())

@@ -175,6 +175,9 @@ steps:
     def test_a_new_constraint(self):
         self.altiplan("new", "constraint", "border", "--python")
         self.assertIn("0 failed", self.altiplan("check-plugin", "border.py", "--time-limit", 300, "--jobs", 2).stdout)
+        (self.folder / "border.py").rename(self.folder / "edge.py")
+        done = self.altiplan("check-plugin", "edge.py", "--only", "^library/", code=4)
+        self.assertIn("expected border.py, after the plugin's name", done.stdout)
 
 
 if __name__ == "__main__":

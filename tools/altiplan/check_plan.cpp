@@ -472,6 +472,9 @@ PlanCheck prepared(PlanCheck plan) {
 JudgedPlan judge(PlanCheck& plan, const std::string& text,
                  const std::optional<host::Config>& scenario, const host::Overrides& overrides) {
   JudgedPlan judged{host::read_mission_file(plan.plan, text), {}, {}};
+  if (plan.above_ground_m) {
+    host::put_above_ground(plan.plan, judged.mission, *plan.above_ground_m);
+  }
   host::expect_route(plan.plan, judged.mission);
   plan.gate.world_during = world_during(plan, judged.mission, overrides);
   judged.world = busy("building the world", [&] {

@@ -23,6 +23,7 @@ struct PlanCheck {
   double radius_m = 0;
   host::GateOptions gate;                 ///< who may fly it
   std::optional<std::string> parameters;  ///< a file with the autopilot's
+  std::optional<double> above_ground_m;   ///< of a line without heights
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
   std::optional<double> max_ground_distance_m;

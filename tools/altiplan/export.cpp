@@ -90,16 +90,17 @@ std::string timed_text(const JudgedPlan& judged, const host::ExportOptions& opti
 std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
   const std::string& file = arguments.route.result;
   const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.route.overrides);
-  if (!judged.report.passed()) {
+  const host::ExportOptions& options = arguments.route.options;
+  const host::RouteFormat& format = *options.format;
+  // A line that becomes commands is judged as these are flown, whose frames are other ones.
+  const bool becomes_commands = format.has_commands() && judged.mission.commands.empty();
+  if (!becomes_commands && !judged.report.passed()) {
     tell_findings(file, judged);
     return std::nullopt;
   }
-  const host::ExportOptions& options = arguments.route.options;
-  const host::RouteFormat& format = *options.format;
   if (format.has_commands()) {
-    const std::optional<host::Plan> plan = judged.mission.commands.empty()
-                                               ? plan_of_line(judged, arguments.route)
-                                               : host::plan_of(judged.mission);
+    const std::optional<host::Plan> plan =
+        becomes_commands ? plan_of_line(judged, arguments.route) : host::plan_of(judged.mission);
     if (plan && format.zones == host::RouteFormat::Zones::none &&
         !(plan->fence.empty() && plan->rally.empty())) {
       warn(std::string(format.name) +

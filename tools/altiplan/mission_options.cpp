@@ -32,6 +32,9 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
           "them")
       ->needs(terrain);
   metres("--radius", plan.radius_m, "radius of the vehicle (m, default 0)");
+  metres("--agl", plan.above_ground_m,
+         "height above ground at the points of a line that has none, such as one clamped to the "
+         "ground (m)");
   metres("--min-agl", plan.min_above_ground_m, "minimum height above ground (m)");
   metres("--max-agl", plan.max_above_ground_m, "greatest height above ground (m)");
   metres("--max-distance", plan.max_ground_distance_m,

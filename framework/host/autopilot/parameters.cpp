@@ -12,6 +12,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/formats/input_file.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -113,7 +114,8 @@ constexpr std::string_view kMayBeZero[] = {
     "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
     "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN"};
 
-void expect_possible(const Row& row, double value) {
+void expect_possible(const Row& row, const ParameterValue& given) {
+  const double value = given.value;
   const std::string_view name = row.name;
   const bool is_angle =
       name == "ROLL_LIMIT_DEG" || name == "PTCH_LIM_MAX_DEG" || name == "FW_R_LIM";
@@ -121,9 +123,9 @@ void expect_possible(const Row& row, double value) {
   const bool may_be_zero =
       std::find(std::begin(kMayBeZero), std::end(kMayBeZero), name) != std::end(kMayBeZero);
   if (!(std::abs(value) <= maximum) || (!may_be_zero && !(value > 0))) {
-    throw Error("parameter " + std::string(name) + ": expected " +
+    throw Error(given.place + "parameter " + std::string(name) + ": expected " +
                 (may_be_zero ? "at most " : "more than 0, at most ") +
-                std::to_string(std::llround(maximum)) + ", found " + std::to_string(value));
+                std::to_string(std::llround(maximum)) + ", found " + readable(value));
   }
 }
 
@@ -136,16 +138,16 @@ const Row& row_of(std::string_view name) {
   throw std::logic_error("no such parameter: " + std::string(name));
 }
 
-std::optional<double> value_in(const ParameterFile& file, const Row& row) {
+std::optional<ParameterValue> value_in(const ParameterFile& file, const Row& row) {
   if (file.contains(row.name) && file.contains(row.old_name)) {
-    throw Error("parameter " + std::string(row.name) + ": expected it or its older name " +
-                row.old_name + ", found both");
+    throw Error(file.at(row.old_name).place + "parameter " + std::string(row.name) +
+                ": expected it or its older name " + row.old_name + ", found both");
   }
   if (const auto found = file.find(row.name); found != file.end()) {
     return found->second;
   }
   if (const auto found = file.find(row.old_name); found != file.end()) {
-    return found->second * row.old_unit;
+    return ParameterValue(found->second.value * row.old_unit, found->second.place);
   }
   return std::nullopt;
 }
@@ -174,6 +176,7 @@ ParameterFile read_parameters(const std::string& file) {
     const std::string line = text.substr(at, end - at);
     at = end + 1;
     ++number;
+    const std::string place = file + ":" + std::to_string(number) + ": ";
     std::vector<std::string> words = words_of(line);
     words.erase(std::find_if(words.begin(), words.end(),
                              [](const std::string& word) { return word.front() == '#'; }),
@@ -193,15 +196,15 @@ ParameterFile read_parameters(const std::string& file) {
                        [](unsigned char c) { return char(std::toupper(c)); });
         // Other components of the vehicle have parameters of the same names.
         if (is_of_qgc && words[1] != "1") {
-          values.emplace(key, value);
+          values.emplace(key, ParameterValue(value, place));
         } else {
-          values[key] = value;
+          values[key] = {value, place};
         }
         continue;
       }
     }
     const bool is_pair = is_of_qgc || words.size() == 2;
-    throw Error(file + ":" + std::to_string(number) + ": " +
+    throw Error(place +
                 (is_pair ? words[name] + ": expected a number, found " + excerpt(words[name + 1])
                          : "expected a parameter's name and its value, found " + excerpt(line)));
   }
@@ -217,12 +220,12 @@ double Parameters::operator()(std::string_view name) const {
   }
   const Row& row = row_of(name);
   const std::size_t column = (autopilot_.is_px4() ? 2 : 0) + (autopilot_.is_copter() ? 0 : 1);
-  const std::optional<double> given = value_in(file_, row);
+  const std::optional<ParameterValue> given = value_in(file_, row);
   const bool is_other = autopilot_.is_px4() && autopilot_.airframe == formats::Airframe::vtol &&
                         std::isfinite(row.px4_vtol);
-  const double value = given.value_or(is_other ? row.px4_vtol : row.defaults[column]);
+  const double value = given ? given->value : is_other ? row.px4_vtol : row.defaults[column];
   if (given) {
-    expect_possible(row, value);
+    expect_possible(row, *given);
   }
   used_.emplace(name, Used{std::string(name), value, given.has_value()});
   return value;

@@ -4,14 +4,22 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "altiplan/formats/mission_commands.hpp"
 
 namespace altiplan::host {
 
+struct ParameterValue {
+  double value = 0;
+  std::string place{};  ///< for messages: "vehicle.param:12: ", "" of no file
+
+  ParameterValue() = default;
+  ParameterValue(double v, std::string where = "") : value(v), place(std::move(where)) {}
+};
 /// Parameters of an autopilot as a file has them, by name.
-using ParameterFile = std::map<std::string, double>;
+using ParameterFile = std::map<std::string, ParameterValue>;
 
 /// Reads Mission Planner's `.param` ("NAME,VALUE") or QGroundControl's `.params` (five columns, the
 /// third and fourth name and value). Throws Error naming the file and the line.

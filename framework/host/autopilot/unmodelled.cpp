@@ -89,8 +89,8 @@ bool has_effect(const Unmodelled& one, Autopilot autopilot, const ParameterFile&
   if (!one.is_of(autopilot) || given == file.end()) {
     return false;
   }
-  return one.bits != 0 ? (std::llround(given->second) & one.bits) != 0
-                       : std::abs(given->second - one.neutral) > 1e-3;
+  return one.bits != 0 ? (std::llround(given->second.value) & one.bits) != 0
+                       : std::abs(given->second.value - one.neutral) > 1e-3;
 }
 
 void remark(const Unmodelled& one, std::size_t n, Flight& flight, const FlightOptions& options) {
@@ -115,7 +115,7 @@ void Walker::remark_parameters() {
     }
     if (formats::is_above_ground(commands_[n].frame) && formats::flies_to_position(task) &&
         is_of_ardupilot(autopilot_) && options_.parameters.contains("TERRAIN_ENABLE") &&
-        options_.parameters.at("TERRAIN_ENABLE") == 0) {
+        options_.parameters.at("TERRAIN_ENABLE").value == 0) {
       flight_.remark(Weight::fails, "terrain", n,
                      autopilot_.name() +
                          " knows no ground (TERRAIN_ENABLE 0): it returns home, or "

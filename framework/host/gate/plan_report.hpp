@@ -142,6 +142,9 @@ inline constexpr double kUnknownGround = 9'000;
 
 /// Throws Error, beginning with `file`, naming what a mission without a route holds instead.
 void expect_route(const std::string& file, const formats::MissionFile& plan);
+/// Puts each point of a drawn line without heights at this height above the ground. Throws Error,
+/// naming the file, for any other.
+void put_above_ground(const std::string& file, formats::MissionFile& plan, double height_m);
 
 /// The world as it is from one time of the flight to another, in seconds.
 using WorldDuring = std::function<Mission(double, double)>;

@@ -103,7 +103,8 @@ std::string in_words(const RefusedReturn& refused, const PlanReport& report) {
 
 void expect_route(const std::string& file, const formats::MissionFile& plan) {
   if (!plan.route_problem.empty() && plan.commands.empty()) {
-    throw Error(file + ": " + plan.route_problem);
+    throw Error(file + ": " + plan.route_problem +
+                (plan.lacks_heights ? " (--agl METRES puts it above the ground)" : ""));
   }
   if (plan.items.empty()) {
     throw Error(file + ": it contains no route" +
@@ -113,5 +114,18 @@ void expect_route(const std::string& file, const formats::MissionFile& plan) {
                                              : ""
                      : ", and where " + plan.moves.front() + " flies is not judged"));
   }
+}
+
+void put_above_ground(const std::string& file, formats::MissionFile& plan, double height_m) {
+  if (!plan.lacks_heights) {
+    throw Error(file + ": --agl is for a line without heights: " +
+                (plan.route_problem.empty() ? "this one has its own" : plan.route_problem));
+  }
+  for (formats::MissionItem& item : plan.items) {
+    item.at.altitude_m = height_m;
+    item.at.frame = formats::AltitudeFrame::ground;
+  }
+  plan.route_problem.clear();
+  plan.lacks_heights = false;
 }
 }  // namespace altiplan::host

@@ -13,6 +13,7 @@ using Node = JsonNode;
 void read_line(const Node& feature, MissionFile& mission) {
   if (!mission.items.empty()) {
     mission.route_problem = "expected one LineString as the route, found more";
+    mission.lacks_heights = false;
     return;
   }
   AltitudeFrame frame = AltitudeFrame::sea;
@@ -41,11 +42,16 @@ void read_line(const Node& feature, MissionFile& mission) {
   const Node points = feature.at("geometry").at("coordinates");
   for (std::size_t n = 0; n < points.size(); ++n) {
     const Node point = points.at(n);
-    if (point.size() != 3) {
+    if (point.size() != 2 && point.size() != 3) {
       point.wrong("[longitude, latitude, altitude]");
     }
+    if (point.size() == 2 && mission.route_problem.empty()) {
+      mission.route_problem =
+          "a route needs heights, three numbers per point: found two in " + point.place();
+      mission.lacks_heights = true;
+    }
     const MissionPoint p{point.at(std::size_t{0}).number(), point.at(1).number(),
-                         point.at(2).number(), frame};
+                         point.size() == 3 ? point.at(2).number() : 0, frame};
     point.told([&] {
       expect_position(p.lon, p.lat);
       expect_altitude(p.altitude_m);

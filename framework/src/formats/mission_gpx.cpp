@@ -39,6 +39,7 @@ class GpxReader {
                                std::to_string(routes_ > 1 ? routes_ : tracks_);
     } else if (without_height_) {
       mission_.route_problem = "a route needs heights: an ele in each point";
+      mission_.lacks_heights = true;
     }
     mission_.items = routes_ > 0 ? std::move(route_) : std::move(track_);
   }

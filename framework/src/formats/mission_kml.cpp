@@ -162,6 +162,7 @@ class KmlReader {
           "a route needs heights, three numbers per point and the altitudeMode absolute or "
           "relativeToGround: found " +
           route.without_height;
+      mission_.lacks_heights = true;
     }
     mission_.items = lines_ > 0 ? std::move(line_.items) : std::move(points_.items);
     if (lines_ > 0 && !points_.items.empty()) {

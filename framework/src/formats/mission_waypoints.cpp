@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mission_parts.hpp"
@@ -41,14 +42,19 @@ struct Row {
   explicit Row(std::string_view line) {
     const std::vector<std::string_view> words = words_of(line);
     if (words.size() != kFields) {
-      throw Error("expected 12 columns, found " + std::to_string(words.size()));
+      const bool has_commas = line.find(',') != std::string_view::npos;
+      throw Error("expected 12 columns, found " + std::to_string(words.size()) +
+                  (has_commas ? ": they are separated by tabs or spaces, not by commas" : ""));
     }
     for (std::size_t n = 0; n < kFields; ++n) {
       const std::optional<double> value = number_of(words[n]);
       const bool is_parameter = n >= 4 && n <= 7;  // "nan": left to the autopilot
       if (!value || !(std::isfinite(*value) || (is_parameter && std::isnan(*value)))) {
         throw Error(std::string("expected a number as ") + kNames[n] + ", found " +
-                    excerpt(words[n]));
+                    excerpt(words[n]) +
+                    (words[n].find(',') != std::string_view::npos
+                         ? ", which has a comma for its decimal point"
+                         : ""));
       }
       fields[n] = *value;
     }
@@ -207,6 +213,8 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
   std::size_t number = 0;
   bool begun = false;
   bool is_list = false;  // of rally points
+  std::vector<std::pair<std::size_t, Row>>
+      rows;  // after their lines: what is no number comes first
   const auto add = [&](const Row& row) {
     if (row.whole(0, 1'000'000) != int(number)) {
       throw Error("expected item " + std::to_string(number) + ", found " +
@@ -250,11 +258,15 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
       if (is_list) {
         mission.rally.push_back(rally_line(words));
       } else if (begun) {
-        add(Row(content));
+        rows.emplace_back(line, Row(content));
       } else {
         expect_header(content);
         begun = true;
       }
+    }
+    for (const auto& [at, row] : rows) {
+      line = at;
+      add(row);
     }
     fence.finish();
   } catch (const Error& error) {

@@ -20,9 +20,10 @@ constexpr const char* kNamedAlike = "Library: named after its only plugin";
 constexpr const char* kLoads = "Library: loads, with all symbols and all listed plugins";
 constexpr const char* kSymbols = "Library: exports altiplan_plugins and nothing else";
 
-/// The name that altiplan_add_plugin gives to a library of this plugin.
-std::string file_of(const Manifest& plugin) {
-  return std::string("libaltiplan_") + plugin.kind + "_" + plugin.name + ".so";
+/// The name that altiplan_add_plugin or `altiplan new --python` gives to a file of this plugin.
+std::string file_of(const Manifest& plugin, bool is_script) {
+  return is_script ? std::string(plugin.name) + ".py"
+                   : std::string("libaltiplan_") + plugin.kind + "_" + plugin.name + ".so";
 }
 
 Outcome manifest_fits(const host::Library& library) {
@@ -30,11 +31,13 @@ Outcome manifest_fits(const host::Library& library) {
     return {{{kManifest, library.refused}}, "", false, ""};
   }
   const std::string file = library.file.filename().string();
-  if (file.starts_with("libaltiplan_") && library.plugins.size() == 1 &&
-      file != file_of(library.plugins.front())) {
-    return {{{kNamedAlike, "expected " + file_of(library.plugins.front()) +
-                               ", after the kind and the name in ALTIPLAN_PLUGIN: name both alike "
-                               "in altiplan_add_plugin"}},
+  const bool is_script = host::is_script(library.file);
+  if ((is_script || file.starts_with("libaltiplan_")) && library.plugins.size() == 1 &&
+      file != file_of(library.plugins.front(), is_script)) {
+    return {{{kNamedAlike, "expected " + file_of(library.plugins.front(), is_script) +
+                               (is_script ? ", after the plugin's name"
+                                          : ", after the kind and the name in ALTIPLAN_PLUGIN: "
+                                            "name both alike in altiplan_add_plugin")}},
             "",
             false,
             ""};

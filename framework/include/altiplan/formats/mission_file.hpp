@@ -58,7 +58,8 @@ struct MissionFile {
   std::vector<MissionItem> items;
   /// Places of the commands that fly otherwise than to a position: a return, a jump, a scan.
   std::vector<std::string> moves;
-  std::string route_problem;  ///< why the items are not a route, "" where they are
+  std::string route_problem;   ///< why the items are not a route, "" where they are
+  bool lacks_heights = false;  ///< that is why: no commands, and a point without a height
   std::vector<Zone> zones;
   /// Where the vehicle may return to instead of home: of a .plan, and of QGC WPL 110 (MAV_CMD
   /// 5100).
