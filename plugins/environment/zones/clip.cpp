@@ -15,6 +15,7 @@
 #include <boost/geometry/geometries/polygon.hpp>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "altiplan/error.hpp"
 #include "altiplan/formats/polygon.hpp"
@@ -168,32 +169,69 @@ std::string Clip::note() const {
          " cut at them";
 }
 
-std::string Clip::why_none(const Frame& frame, const std::vector<formats::Point2>& corners) const {
-  if (kept_ > 0 || dropped_ == 0 || !frame.has_position()) {
-    return "";
+std::string Clip::why_none(const std::vector<formats::Point2>& corners) const {
+  return kept_ > 0 || dropped_ == 0 || corners.empty()
+             ? ""
+             : "none of its zones lies within the bounds: they cover " + extent_text(corners);
+}
+
+Box ground_area(const World& before) {
+  Box area = Box::empty();
+  for (const Layer& layer : before.layers()) {
+    if (layer.environment->ground() != nullptr) {
+      area = area.united(layer.environment->bounds());
+    }
   }
+  area.min.z() = -kInfinity;
+  area.max.z() = kInfinity;
+  return area;
+}
+
+std::string extent_text(const std::vector<formats::Point2>& corners) {
   Box degrees = Box::empty();
   for (const auto& [lon, lat] : corners) {
     degrees = degrees.with({lon, lat, 0});
   }
-  bool would_do = false;
-  try {
-    Box swapped = Box::empty();
-    for (const auto& [lat, lon] : corners) {
-      const auto [x, y] = frame.to_local(lon, lat);
-      swapped = swapped.with({x, y, 0});
-    }
-    would_do = !is_outside(swapped, bounds_);
-  } catch (const Error&) {
-    // So far away that the projection fails.
-  }
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "none of its zones lies within the bounds: they cover longitude %.7g to %.7g and "
-                "latitude %.7g to %.7g",
+  char text[120];
+  std::snprintf(text, sizeof text, "longitude %.7g to %.7g and latitude %.7g to %.7g",
                 degrees.min.x(), degrees.max.x(), degrees.min.y(), degrees.max.y());
-  return text + std::string(would_do ? "; with the two exchanged they would lie within: does "
-                                       "latitude stand first in the file?"
-                                     : "");
+  return text;
+}
+
+namespace {
+/// Horizontally; none if a corner lies so far away that the projection fails.
+std::optional<Box> bounds_of(const std::vector<formats::Point2>& corners, const Frame& frame,
+                             bool exchanged) {
+  Box bounds = Box::empty();
+  try {
+    for (const auto& [lon, lat] : corners) {
+      const auto [x, y] = exchanged ? frame.to_local(lat, lon) : frame.to_local(lon, lat);
+      bounds = bounds.with({x, y, 0});
+    }
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  return bounds;
+}
+}  // namespace
+
+void expect_longitude_first(const Site& site, const std::vector<formats::Point2>& corners) {
+  constexpr double kFar = 500'000;  // metres
+  const Box ground = ground_area(*site.before);
+  const Box here = ground.min.x() < ground.max.x() ? ground : site.volume;
+  if (!site.frame.has_position() || corners.empty() ||
+      !(here.max - here.min).head<2>().allFinite()) {
+    return;
+  }
+  const auto written = bounds_of(corners, site.frame, false);
+  const auto exchanged = bounds_of(corners, site.frame, true);
+  const Vec3 reach(kFar, kFar, 0);
+  if ((!written || is_outside(*written, {here.min - reach, here.max + reach})) && exchanged &&
+      !is_outside(*exchanged, here)) {
+    throw Error(
+        "its zones lie here only with longitude and latitude exchanged: does latitude stand "
+        "first in the file? They cover " +
+        extent_text(corners));
+  }
 }
 }  // namespace altiplan::zones

@@ -31,9 +31,9 @@ class Clip {
   void drop() { ++dropped_; }
   /// Number of zones dropped and cut.
   std::string note() const;
-  /// Of zones none of which lies within the bounds: what their corners (longitude, latitude) cover,
-  /// and whether they would lie within if latitude stood first in their file. "" if one does.
-  std::string why_none(const Frame& frame, const std::vector<formats::Point2>& corners) const;
+  /// Of zones none of which lies within the bounds: what their corners (longitude, latitude) cover.
+  /// "" if one does.
+  std::string why_none(const std::vector<formats::Point2>& corners) const;
 
  private:
   Box bounds_;
@@ -41,4 +41,13 @@ class Clip {
   std::size_t kept_ = 0;
   std::size_t cut_ = 0;  ///< of those kept
 };
+
+/// Bounds of all ground before this layer.
+Box ground_area(const World& before);
+/// "longitude 8.1 to 8.3 and latitude 47 to 47.2"
+std::string extent_text(const std::vector<formats::Point2>& corners);
+
+/// Throws Error if zones far from the world's ground (of a world without ground: its volume) would
+/// lie over it if latitude stood first in their file.
+void expect_longitude_first(const Site& site, const std::vector<formats::Point2>& corners);
 }  // namespace altiplan::zones

@@ -9,6 +9,7 @@
 
 #include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/ground.hpp"
+#include "clip.hpp"
 
 namespace altiplan::zones {
 namespace {
@@ -18,19 +19,6 @@ using formats::ZoneLimit;
 using formats::ZoneVolume;
 using Datum = ZoneLimit::Datum;
 using Use = PublishedRules::Use;
-
-/// Bounds of all ground before this layer.
-Box ground_area(const World& before) {
-  Box area = Box::empty();
-  for (const Layer& layer : before.layers()) {
-    if (layer.environment->ground() != nullptr) {
-      area = area.united(layer.environment->bounds());
-    }
-  }
-  area.min.z() = -kInfinity;
-  area.max.z() = kInfinity;
-  return area;
-}
 
 class Converter {
  public:

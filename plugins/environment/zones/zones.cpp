@@ -348,6 +348,11 @@ class Zones : public Environment {
         site.frame = own_frame(name, file, params.published);
         frame = site.frame;
       }
+      try {
+        expect_longitude_first(site, corners_of(file));
+      } catch (const Error& error) {
+        throw Error(name + ": " + error.what());
+      }
       std::optional<Clip> clip;
       if (params.clip) {
         clip.emplace(site);
@@ -379,7 +384,7 @@ class Zones : public Environment {
       }
       if (clip) {
         notes.push_back(clip->note());
-        why_none = clip->why_none(site.frame, corners_of(file));
+        why_none = clip->why_none(corners_of(file));
       }
     }
 
