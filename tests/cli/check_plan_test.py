@@ -79,6 +79,41 @@ class CheckPlan(PlanCase):
         _, err = self.call("two.geojson", "--terrain", TERRAIN, "--agl", "80", code=3)
         self.assertIn("expected one LineString as the route, found more", err)
 
+    def test_polygons_beside_a_line(self):
+        """Nothing says whether they are closed, but for those that we wrote."""
+        ring = self.around(-84.36, 36.497, 0.004)
+        line = [[-84.38, 36.48, 1500], [-84.34, 36.514, 1500]]
+        feature = lambda kind, coordinates, **more: {"type": "Feature", "properties": more,
+                                                     "geometry": {"type": kind, "coordinates": coordinates}}
+        kml = ("<kml><Document><Placemark><LineString><altitudeMode>absolute</altitudeMode><coordinates>{}</coordinates>"
+               "</LineString></Placemark><Placemark><name>Field</name>{}<Polygon><outerBoundaryIs><LinearRing><coordinates>"
+               "{}</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>")
+        text = lambda points: " ".join(",".join(map(str, point)) for point in points)
+        for role in (None, "keep_out"):
+            more = {"role": role} if role else {}
+            data = f'<ExtendedData><Data name="role"><value>{role}</value></Data></ExtendedData>' if role else ""
+            files = {"own.kml": kml.format(text(line), data, text(ring)),
+                     "own.geojson": json.dumps({"type": "FeatureCollection", "features": [
+                         feature("LineString", line), feature("Polygon", [ring], name="Field", **more)]})}
+            for name, content in files.items():
+                (self.folder / name).write_text(content)
+                out, _ = self.call(name, "--terrain", TERRAIN, code=1)
+                self.assertTrue(out.startswith("fail" if role else "not judged"), out)
+                self.assertIn("'Field'", out)
+                self.assertEqual("own polygons are closed is not said" in out, role is None)
+                out, _ = self.call(name, "--terrain", TERRAIN, "--airspace", name, code=1)
+                self.assertTrue(out.startswith("fail"), out)
+
+    def test_parameters_of_another_vehicle(self):
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        for text, of in (("RTL_CLIMB_MIN,0\nTECS_CLMB_MAX,5\nNAVL1_PERIOD,17\n", "ArduPilot plane"),
+                         ("WP_JERK,1\nWP_RADIUS,2\nATC_STR_RAT_P,0.2\n", "an ArduPilot rover"),
+                         ("WPNAV_SPEED,500\nJS_GAIN_DEFAULT,0.5\n", "an ArduPilot submarine")):
+            (self.folder / "other.param").write_text(text)
+            out, _ = self.check(high, "--params", "other.param", code=1)
+            self.assertTrue(out.startswith("not judged"), out)
+            self.assertIn(f"the parameters are those of {of}, not of ArduPilot copter", out)
+
     def test_zones_count_at_their_hours(self):
         ring = [[-84.31, 36.52], [-84.25, 36.52], [-84.25, 36.56], [-84.31, 36.56], [-84.31, 36.52]]
         zone = {"title": "test", "features": [{

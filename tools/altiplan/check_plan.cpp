@@ -436,6 +436,20 @@ void expect_files(const PlanCheck& plan) {
   }
 }
 
+/// Of zones beside the mission's line.
+Finding zones_finding(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 5;
+  Finding finding;
+  finding.violation.constraint = "zones";
+  finding.violation.value = double(names.size());
+  finding.violation.message =
+      "whether the file's own polygons are closed is not said: " + host::listed(names, kNamed) +
+      ": if they are, give the file as --airspace too, else take them out";
+  finding.items = {"the mission"};
+  finding.is_unjudged = true;
+  return finding;
+}
+
 /// The world that the options describe in a part of the flight's time; none without zones with
 /// hours.
 host::WorldDuring world_during(const PlanCheck& plan, const formats::MissionFile& mission,
@@ -484,6 +498,9 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);
   });
+  if (const auto names = zones_not_judged(plan, judged.mission); !names.empty()) {
+    judged.report.findings.push_back(zones_finding(names));
+  }
   if (plan.returns) {
     judged.report.returns = busy("judging the returns", [&] {
       return host::judge_returns(judged.mission, judged.world, plan.gate);

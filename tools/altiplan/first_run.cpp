@@ -236,9 +236,10 @@ void print_zones(const host::RunResult& result, const std::vector<std::string>& 
   for (const std::string& layer : layers) {
     std::string text;
     for (const std::string& note : result.notes) {
-      const bool is_count = note.find("keep-in zones, ") != note.npos ||
-                            note.find("zones outside the bounds") != note.npos;
-      if (is_count && note.rfind(layer + ": ", 0) == 0) {
+      const bool counts = note.find("keep-in zones, ") != note.npos ||
+                          note.find("zones outside the bounds") != note.npos ||
+                          note.find(", skipped: ") != note.npos;
+      if (counts && note.rfind(layer + ": ", 0) == 0) {
         text += (text.empty() ? "" : "; ") + note.substr(layer.size() + 2);
       }
     }

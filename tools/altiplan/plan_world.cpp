@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "altiplan/formats/geojson.hpp"
 #include "altiplan/formats/mission_commands.hpp"
 #include "host/first_route/tiles.hpp"
 #include "host/first_route/zones.hpp"
@@ -43,6 +44,37 @@ bool has_fence(const formats::MissionFile& mission) {
   using Format = formats::MissionFile::Format;
   return !mission.zones.empty() &&
          (mission.format == Format::qgc_plan || mission.format == Format::waypoints);
+}
+
+/// Those that a KML or GeoJSON file has beside its line.
+std::vector<formats::Zone> zones_beside(const std::string& file,
+                                        const formats::MissionFile& mission) {
+  using Format = formats::MissionFile::Format;
+  if (mission.format == Format::kml) {
+    return mission.zones;
+  }
+  std::vector<formats::Zone> zones;
+  if (mission.format == Format::geojson) {
+    const formats::GeoJson json = formats::read_geojson(file);
+    for (const auto* features : {&json.features, &json.surroundings}) {
+      std::transform(features->begin(), features->end(), std::back_inserter(zones),
+                     formats::zone_of);
+    }
+  }
+  return zones;
+}
+
+bool is_airspace(const PlanCheck& plan) {
+  return std::any_of(plan.airspace.begin(), plan.airspace.end(), [&](const std::string& file) {
+    return absolute(file) == absolute(plan.plan);
+  });
+}
+
+/// A polygon with a role is a zone; another one may be an area of work.
+bool has_roles(const std::vector<formats::Zone>& zones) {
+  return std::any_of(zones.begin(), zones.end(), [](const formats::Zone& zone) {
+    return zone.restriction != formats::Restriction::unspecified;
+  });
 }
 
 std::string point_text(const char* key, const formats::MissionItem& item) {
@@ -147,6 +179,9 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
   }
   if (has_fence(mission)) {
     add_zones(plan.plan, "fence of the mission", ", keep_in: all");
+  } else if (!is_airspace(plan) && has_roles(zones_beside(plan.plan, mission))) {
+    add_zones(plan.plan, "zones of the mission",
+              host::zone_parameters(absolute(plan.plan), plan.start_time.has_value()));
   }
   // The ground and the zones alone bound a mission.
   text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";
@@ -168,6 +203,18 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
   return text + "constraints:\n" + (constraints.empty() ? "  []\n" : constraints);
 }
 }  // namespace
+
+std::vector<std::string> zones_not_judged(const PlanCheck& plan,
+                                          const formats::MissionFile& mission) {
+  const std::vector<formats::Zone> zones = zones_beside(plan.plan, mission);
+  std::vector<std::string> names;
+  if (!is_airspace(plan) && (plan.scenario || !has_roles(zones))) {
+    for (const formats::Zone& zone : zones) {
+      names.push_back(zone.name.empty() ? "a polygon without a name" : "'" + zone.name + "'");
+    }
+  }
+  return names;
+}
 
 std::string about_file(const Error& error) {
   const auto* of_file = dynamic_cast<const ConfigError*>(&error);

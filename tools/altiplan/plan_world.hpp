@@ -16,6 +16,11 @@ std::vector<std::string> models_of(const PlanCheck& plan);
 host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission,
                       const host::Overrides& overrides);
 
+/// Names of the zones beside the line of a KML or GeoJSON file that the world of a check does not
+/// have: nothing says whether they are closed.
+std::vector<std::string> zones_not_judged(const PlanCheck& plan,
+                                          const formats::MissionFile& mission);
+
 /// A message about a file of that scenario, without its place in text that nobody has written.
 std::string about_file(const Error& error);
 }  // namespace altiplan::cli

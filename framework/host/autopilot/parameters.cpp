@@ -239,7 +239,16 @@ std::string Parameters::of_another() const {
   // PX4 has one set for all vehicles.
   constexpr std::array<std::array<std::size_t, 2>, 3> kColumns{{{0, 0}, {1, 1}, {2, 3}}};
   constexpr std::array kNames{"ArduPilot copter", "ArduPilot plane", "PX4"};
-  std::array<bool, 3> has{};
+  // Names of vehicles that fly no mission of ours.
+  constexpr std::array<std::array<const char*, 2>, 2> kOthers{
+      {{"ATC_STR_RAT_P", "an ArduPilot rover"}, {"JS_GAIN_DEFAULT", "an ArduPilot submarine"}}};
+  for (const auto& [name, vehicle] : kOthers) {
+    if (file_.contains(name)) {
+      return vehicle;
+    }
+  }
+  // Of names that one alone knows today another may have had some: most decide.
+  std::array<int, 3> has{};
   for (const Row& row : kRows) {
     std::array<bool, 3> knows{};
     for (std::size_t n = 0; n < knows.size(); ++n) {
@@ -248,12 +257,12 @@ std::string Parameters::of_another() const {
     }
     const bool is_one_s = std::count(knows.begin(), knows.end(), true) == 1;
     if (is_one_s && (file_.contains(row.name) || file_.contains(row.old_name))) {
-      has[std::size_t(std::find(knows.begin(), knows.end(), true) - knows.begin())] = true;
+      ++has[std::size_t(std::find(knows.begin(), knows.end(), true) - knows.begin())];
     }
   }
   const std::size_t own = autopilot_.is_px4() ? 2 : autopilot_.is_copter() ? 0 : 1;
-  const auto other = std::find(has.begin(), has.end(), true);
-  return has[own] || other == has.end() ? "" : kNames[std::size_t(other - has.begin())];
+  const auto most = std::max_element(has.begin(), has.end());
+  return *most > has[own] ? kNames[std::size_t(most - has.begin())] : "";
 }
 
 bool decide_a_flight(const ParameterFile& file) {

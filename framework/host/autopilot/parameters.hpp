@@ -43,8 +43,8 @@ class Parameters {
     double value;
     bool is_given;  ///< by the file
   };
-  /// The autopilot whose parameters the file has, "" unless it is another: it has names that are
-  /// that one's alone, and none that are this one's alone.
+  /// The autopilot whose parameters the file has, "" unless it is another: it has more names that
+  /// are that one's alone than names that are this one's alone.
   std::string of_another() const;
   /// Sorted by name.
   std::vector<Used> used() const;

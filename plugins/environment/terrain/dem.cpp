@@ -242,6 +242,12 @@ double metres_per_unit(const Params& params, const Dem& dem) {
   const auto is = [&](std::initializer_list<const char*> names) {
     return std::find(names.begin(), names.end(), unit) != names.end();
   };
+  constexpr double kSame = 1e-9;
+  if (unit.empty() && std::abs(dem.unit_m - 1) > kSame) {
+    refuse(params,
+           "its coordinate system does not count in metres, and nothing says whether its heights "
+           "do: name their unit in the file (gdal_edit.py -units ft, or m)");
+  }
   if (is({"", "m", "metre", "meter", "metres", "meters"})) {
     return 1;
   }
