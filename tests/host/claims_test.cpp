@@ -285,6 +285,23 @@ TEST(Claims, NoDifferenceOfSuccessIsNoCertainty) {
   EXPECT_EQ(share.interval->low, wilson(12, 20, 0.95)->low);
 }
 
+TEST(Claims, AClearMeanOfTenScenariosStaysDecidedAmongSeveral) {
+  Study ten(10, 1, 0.9);
+  const std::string ratio = "mean(b.length_m / a.length_m)";
+  ten.data().file.claims = {{"shorter", ratio, "<= 0.95", 0.95},
+                            {"not by half", ratio, ">= 0.5", 0.95},
+                            {"near", ratio, "0.85..0.95", 0.95}};
+  for (const JudgedClaim& judged : judge_claims(ten.data())) {
+    EXPECT_EQ(judged.verdict, Verdict::holds) << judged.words;
+    EXPECT_LT(judged.p, 0.001) << judged.claim.id;
+    EXPECT_FALSE(becomes_undecided(judged)) << judged.claim.id;
+  }
+  const ClaimEntry surer{"surer", ratio, "<= 0.95", 0.99};
+  const JudgedClaim few = judge_claim(ten.data(), surer);
+  EXPECT_EQ(few.why_no_interval, "too few scenarios: at least 12 for 99 %");
+  EXPECT_TRUE(std::isnan(few.p)) << "not a test, and none of several";
+}
+
 TEST(Claims, AMeanWithoutVariationIsUndecided) {
   const Study study(30, 1, 1);
   const JudgedClaim judged = study.judge("mean(a.flight.collisions)", "<= 0.01");

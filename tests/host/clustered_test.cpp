@@ -71,7 +71,7 @@ TEST(Clustered, OfNothing) {
   EXPECT_FALSE(share_interval({}, {}, 0.95).interval);
   EXPECT_FALSE(difference_interval({}, {}, 0.95).interval);
   EXPECT_FALSE(quantile_interval(Sample{}, Indices{}, 0.5, 0.95).interval);
-  EXPECT_FALSE(mean_interval(Sample{}, Indices{}, 0.95).interval);
+  EXPECT_FALSE(mean_interval(Sample{}, Indices{}, 0.95, 10).interval);
   EXPECT_TRUE(std::isnan(success_test({}).p));
 }
 
@@ -155,16 +155,18 @@ TEST(Clustered, QuantilesAndMeansOfRepetitions) {
   EXPECT_NEAR(middle.interval->high, of_once.high, 1);
   EXPECT_EQ(quantile_interval(values, groups, 0.95, 0.95).why_none,
             "too few scenarios: at least 72 for 95 %");
-  const MadeInterval average = mean_interval(values, groups, 0.95);
+  const MadeInterval average = mean_interval(values, groups, 0.95, 10);
   EXPECT_EQ(average.method, "Student's t, skewness corrected, 10 scenarios");
-  EXPECT_NEAR(average.interval->low, mean_interval(once, each(10, 1), 0.95).interval->low, 1e-12);
-  EXPECT_EQ(mean_interval(Sample(30, 2.0), groups, 0.95).why_none, "all values are equal");
+  EXPECT_NEAR(average.interval->low, mean_interval(once, each(10, 1), 0.95, 10).interval->low,
+              1e-12);
+  EXPECT_EQ(mean_interval(Sample(30, 2.0), groups, 0.95, 10).why_none, "all values are equal");
   Sample rare(100, 0.0);
   rare[3] = rare[50] = 1;
-  EXPECT_EQ(mean_interval(rare, each(100, 1), 0.95).why_none, "all but 2 values are equal")
+  EXPECT_EQ(mean_interval(rare, each(100, 1), 0.95, 10).why_none, "all but 2 values are equal")
       << "two of two are no evidence";
-  EXPECT_EQ(mean_interval(std::span(values).first(27), std::span(groups).first(27), 0.95).why_none,
-            "too few scenarios: at least 10 for 95 %");
+  EXPECT_EQ(
+      mean_interval(std::span(values).first(27), std::span(groups).first(27), 0.95, 10).why_none,
+      "too few scenarios: at least 10 for 95 %");
 }
 
 TEST(Clustered, SuccessesOfOneRepetitionAreMcNemars) {

@@ -35,20 +35,28 @@ Sample sample_of(const RandomStream& study, int scenarios, int repetitions, cons
 
 using Make = std::function<MadeInterval(const Sample&)>;
 
-/// The share of studies whose interval contains the truth is within 93 to 97 %, give or take three
-/// deviations of the simulation. `is_discrete`: few successes or failures allow few intervals,
-/// which contain it in 92 % or more.
-void expect_coverage(int studies, const std::string& what, const Draw& draw, int scenarios,
-                     int repetitions, double truth, const Make& make, bool is_discrete = false) {
+/// The share of studies whose interval contains the truth.
+double simulated_coverage(int studies, const std::string& what, const Draw& draw, int scenarios,
+                          int repetitions, double truth, const Make& make) {
   int covered = 0;
   for (int study = 0; study < studies; ++study) {
     const Sample sample =
         sample_of(RandomStream(std::uint64_t(study)).sub(what), scenarios, repetitions, draw);
     const MadeInterval made = make(sample);
-    ASSERT_TRUE(made.interval) << what << ": " << made.why_none;
+    if (!made.interval) {
+      ADD_FAILURE() << what << ": " << made.why_none;
+      return 0;
+    }
     covered += made.interval->low <= truth && truth <= made.interval->high ? 1 : 0;
   }
-  const double share = double(covered) / studies;
+  return double(covered) / studies;
+}
+
+/// It is within 93 to 97 %, give or take three deviations of the simulation. `is_discrete`: few
+/// successes or failures allow few intervals, which contain the truth in 92 % or more.
+void expect_coverage(int studies, const std::string& what, const Draw& draw, int scenarios,
+                     int repetitions, double truth, const Make& make, bool is_discrete = false) {
+  const double share = simulated_coverage(studies, what, draw, scenarios, repetitions, truth, make);
   const double chance = 3 * std::sqrt(0.05 * 0.95 / studies);
   EXPECT_GE(share, (is_discrete ? 0.92 : 0.93) - chance) << what;
   EXPECT_LE(share, is_discrete ? 1 : 0.97 + chance) << what;
@@ -118,7 +126,7 @@ void simulate_quantiles(int studies) {
 }
 
 void simulate_means(int studies) {
-  const Make mean = [](const Sample& s) { return mean_interval(s.values, s.groups, 0.95); };
+  const Make mean = [](const Sample& s) { return mean_interval(s.values, s.groups, 0.95, 10); };
   const Draw normal = [](RandomStream&, RandomStream& run) { return run.normal(); };
   const Draw skewed = [](RandomStream&, RandomStream& run) { return exponential(run); };
   const Draw even = [](RandomStream&, RandomStream& run) { return run.uniform(); };
@@ -137,14 +145,84 @@ void simulate_means(int studies) {
   expect_coverage(studies, "skewed, shared, 40 x 5", both, 40, 5, 1, mean);
 }
 
+/// p-values of means of 10 and 11 scenarios come from intervals of more confidence than these
+/// numbers are asked for: even of a long tail they miss the truth as rarely as 15 scenarios' do.
+void simulate_p_values_of_few(int studies) {
+  const Draw skewed = [](RandomStream&, RandomStream& run) { return exponential(run); };
+  const Draw lognormal = [](RandomStream&, RandomStream& run) { return std::exp(run.normal()); };
+  const auto expect_rare = [&](double p, const char* what, const Draw& draw, double truth,
+                               double limit) {
+    for (const int scenarios : {10, 11}) {
+      const double missed =
+          1 - simulated_coverage(studies, what, draw, scenarios, 1, truth, [&](const Sample& s) {
+            return mean_interval(s.values, s.groups, 1 - p, 10);
+          });
+      EXPECT_LE(missed, limit + 3 * std::sqrt(limit / studies))
+          << "p < " << p << " of " << scenarios << ", " << what;
+    }
+  };
+  expect_rare(0.01, "exponential", skewed, 1, 0.01);
+  expect_rare(0.001, "exponential", skewed, 1, 0.001);
+  expect_rare(0.01, "lognormal", lognormal, std::exp(0.5), 0.02);
+  expect_rare(0.001, "lognormal", lognormal, std::exp(0.5), 0.002);
+}
+
+/// The chances of 0, 1, … successes of `trials`.
+std::vector<double> binomial(int trials, double share) {
+  std::vector<double> chances;
+  for (int k = 0; k <= trials; ++k) {
+    chances.push_back(std::exp(std::lgamma(trials + 1) - std::lgamma(k + 1) -
+                               std::lgamma(trials - k + 1) + k * std::log(share) +
+                               (trials - k) * std::log1p(-share)));
+  }
+  return chances;
+}
+
+TEST(IntervalCoverage, SharesExactly) {
+  // Of all numbers of scenarios from 20 on and shares from 5 to 95 %, without simulation.
+  int within = 0;
+  int all = 0;
+  double least = 1;
+  for (int trials = 20; trials <= 400; trials += trials < 60 ? 1 : 5) {
+    for (int twentieths = 1; twentieths < 20; ++twentieths) {
+      const double share = twentieths / 20.0;
+      const std::vector<double> chances = binomial(trials, share);
+      double coverage = 0;
+      for (int k = 0; k <= trials; ++k) {
+        const Interval interval = *wilson(k, trials, 0.95);
+        const bool has = interval.low <= share && share <= interval.high;
+        coverage += has ? chances[std::size_t(k)] : 0;
+      }
+      within += coverage >= 0.93 && coverage <= 0.97;
+      ++all;
+      least = std::min(least, coverage);
+    }
+  }
+  EXPECT_GT(within, 0.95 * all) << "of " << all;
+  EXPECT_GT(least, 0.9195);
+}
+
+TEST(IntervalCoverage, NoIntervalOf20SuitsAShareOf95PerCent) {
+  // An interval contains 0.95 for 18 to 20 successes or for 17 to 20, hardly for fewer: whichever
+  // method, its coverage is one of these two.
+  const std::vector<double> chances = binomial(20, 0.95);
+  const double of_three = chances[18] + chances[19] + chances[20];
+  EXPECT_NEAR(of_three, 0.9245, 5e-5);
+  EXPECT_NEAR(of_three + chances[17], 0.9841, 5e-5);
+  EXPECT_LT(wilson(17, 20, 0.95)->high, 0.95);
+  EXPECT_GT(wilson(18, 20, 0.95)->high, 0.95);
+}
+
 TEST(IntervalCoverage, Shares) { simulate_shares(1000); }
 TEST(IntervalCoverage, DifferencesOfShares) { simulate_differences_of_shares(1000); }
 TEST(IntervalCoverage, Quantiles) { simulate_quantiles(1000); }
 TEST(IntervalCoverage, Means) { simulate_means(1000); }
+TEST(IntervalCoverage, PValuesOfFew) { simulate_p_values_of_few(1000); }
 
 TEST(NightlyIntervalCoverage, Shares) { simulate_shares(10'000); }
 TEST(NightlyIntervalCoverage, DifferencesOfShares) { simulate_differences_of_shares(10'000); }
 TEST(NightlyIntervalCoverage, Quantiles) { simulate_quantiles(10'000); }
 TEST(NightlyIntervalCoverage, Means) { simulate_means(10'000); }
+TEST(NightlyIntervalCoverage, PValuesOfFew) { simulate_p_values_of_few(10'000); }
 }  // namespace
 }  // namespace altiplan::study::interval_coverage_test

@@ -235,7 +235,10 @@ TEST(Intervals, MeansLeanWhereTheTailIs) {
   EXPECT_NEAR(10 - skewed->low, 2.2621572, 1e-6) << "Student's t, whose error is 1 here";
   EXPECT_GT(skewed->high - 10, 2 * (10 - skewed->low));
   EXPECT_FALSE(mean_interval(10, Sample(10, 0.0), 0.95)) << "others may be rare";
-  EXPECT_FALSE(mean_interval(10, std::span(even).first(9), 0.95)) << "too few";
+  EXPECT_FALSE(mean_interval(10, std::span(even).first(3), 0.95)) << "too few";
+  EXPECT_NEAR(mean_interval(10, even, 0.96)->high - 10, 2.3984 * std::sqrt(38.0 / 9 / 10), 1e-4);
+  EXPECT_NEAR(mean_interval(10, even, 0.99)->high - 10, 5.8409 * std::sqrt(38.0 / 9 / 10), 1e-4)
+      << "Student's t of 3 degrees: 12 units would do for 9";
   EXPECT_FALSE(mean_interval(10, even, 1));
   EXPECT_FALSE(mean_interval(kInfinity, even, 0.95));
 }

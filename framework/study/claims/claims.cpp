@@ -46,7 +46,7 @@ bool is_success(const ClaimExpression& expression, const ClaimQuantity& quantity
 /// A mean of successes is a share, and one of their differences the difference of two: of equal
 /// values too, these have intervals of some width.
 MadeInterval interval_of_mean(const ClaimQuantity& quantity, const ClaimPairs& pairs,
-                              double confidence) {
+                              double confidence, std::size_t fewest) {
   const ClaimExpression& of = quantity.expression;
   if (is_success(of, quantity)) {
     return share_interval(pairs.results, pairs.scenarios, confidence);
@@ -55,12 +55,12 @@ MadeInterval interval_of_mean(const ClaimQuantity& quantity, const ClaimPairs& p
       is_success(of.operands[1], quantity)) {
     return difference_interval(pairs.results, pairs.scenarios, confidence);
   }
-  return mean_interval(pairs.results, pairs.scenarios, confidence);
+  return mean_interval(pairs.results, pairs.scenarios, confidence, fewest);
 }
 
-/// Without interval or reason for an extreme.
-MadeInterval interval_of(const ClaimQuantity& quantity, const ClaimPairs& pairs,
-                         double confidence) {
+/// Without interval or reason for an extreme. `fewest`: the minimum number of units for a mean.
+MadeInterval interval_of(const ClaimQuantity& quantity, const ClaimPairs& pairs, double confidence,
+                         std::size_t fewest) {
   switch (quantity.function) {
     case Function::min:
     case Function::max:
@@ -68,7 +68,7 @@ MadeInterval interval_of(const ClaimQuantity& quantity, const ClaimPairs& pairs,
     case Function::share:
       return share_interval(pairs.results, pairs.scenarios, confidence);
     case Function::mean:
-      return interval_of_mean(quantity, pairs, confidence);
+      return interval_of_mean(quantity, pairs, confidence, fewest);
     case Function::quantile:
       break;
   }
@@ -81,7 +81,8 @@ void find_interval(const ClaimQuantity& quantity, const ClaimPairs& pairs, Judge
     judged.why_no_interval = "too many values are infinite";  // something over zero
     return;
   }
-  const MadeInterval made = interval_of(quantity, pairs, judged.claim.confidence);
+  const double confidence = judged.claim.confidence;
+  const MadeInterval made = interval_of(quantity, pairs, confidence, fewest_for_mean(confidence));
   judged.interval = made.interval;
   judged.method = made.method;
   judged.why_no_interval = made.why_none;
@@ -99,11 +100,12 @@ Verdict verdict_of(const ClaimRange& range, const std::optional<Interval>& inter
   return range.meets(low, high) ? Verdict::undecided : Verdict::fails;
 }
 
-/// The least 1 - confidence of an interval that decides the claim: 1e-9 or less is 1e-9.
+/// The least 1 - confidence of an interval that decides the claim: 1e-9 or less is 1e-9. There are
+/// enough units for a mean if there are for the claim itself.
 double p_of(const ClaimQuantity& quantity, const ClaimPairs& pairs, const ClaimRange& range) {
   const auto is_decided = [&](double log_p) {
     const double confidence = 1 - std::pow(10, log_p);
-    return verdict_of(range, interval_of(quantity, pairs, confidence).interval) !=
+    return verdict_of(range, interval_of(quantity, pairs, confidence, 0).interval) !=
            Verdict::undecided;
   };
   double undecided = -9;
@@ -173,7 +175,7 @@ JudgedClaim judge_claim(const StudyData& data, const ClaimEntry& claim) {
         judged.verdict = range.contains(judged.estimate) ? Verdict::holds : Verdict::fails;
       } else {
         judged.verdict = verdict_of(range, judged.interval);
-        judged.p = std::isfinite(judged.estimate) ? p_of(quantity, pairs, range) : kNone;
+        judged.p = judged.interval ? p_of(quantity, pairs, range) : kNone;
       }
     }
     say(judged, range, quantity, pairs, data);

@@ -37,7 +37,7 @@ struct JudgedClaim {
   bool has_too_few = false;  ///< scenarios or repetitions for an interval
   bool measured = false;     ///< names a time or memory, which vary between equal runs
   std::string why_no_interval;  ///< "too few scenarios: at least 6 for 95 %"; "" with one
-  double p = kNone;       ///< 1 - the highest confidence that decides the claim; NaN of an extreme
+  double p = kNone;  ///< 1 - the highest confidence that decides the claim; NaN without interval
   double p_holm = kNone;  ///< adjusted for all claims that are judged together
   std::string stated;     ///< "changed after 12 runs"; "" if it reads as before the first run
   std::string words;      ///< the verdict and its reasons, in sentences

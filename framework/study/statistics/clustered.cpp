@@ -171,19 +171,19 @@ MadeInterval quantile_interval(std::span<const double> values, std::span<const s
 }
 
 MadeInterval mean_interval(std::span<const double> values, std::span<const std::size_t> groups,
-                           double confidence) {
+                           double confidence, std::size_t fewest) {
   if (values.empty()) {
     return {};
   }
   const Units units = units_of(groups);
   MadeInterval made;
-  made.why_none = why_no_interval(units, confidence, fewest_for_mean(confidence));
+  made.why_none = why_no_interval(units, confidence, fewest);
   if (!made.why_none.empty()) {
     return made;
   }
   const std::vector<double> deviations = deviations_of(values, groups);
   const std::size_t others = deviations.size() - greatest_count(deviations);
-  if (others < fewest_for_mean(confidence) && 2 * others < deviations.size()) {
+  if (others < fewest && 2 * others < deviations.size()) {
     made.why_none = others == 0 ? "all values are equal"
                                 : "all but " + std::to_string(others) + " values are equal";
     return made;

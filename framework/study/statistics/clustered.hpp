@@ -46,10 +46,10 @@ MadeInterval difference_interval(std::span<const double> differences,
                                  std::span<const std::size_t> groups, double confidence);
 MadeInterval quantile_interval(std::span<const double> values, std::span<const std::size_t> groups,
                                double q, double confidence);
-/// Of the mean over all values, whose units are the scenarios. None if more than half are equal and
-/// fewer of the others than scenarios are needed: how often these occur cannot be seen.
+/// Of the mean over all values, whose units are the scenarios: at least `fewest`. None if more than
+/// half are equal and fewer than that differ: how often these occur cannot be seen.
 MadeInterval mean_interval(std::span<const double> values, std::span<const std::size_t> groups,
-                           double confidence);
+                           double confidence, std::size_t fewest);
 
 /// The numbers of pairs of runs.
 struct PairedSample {

@@ -114,12 +114,13 @@ std::optional<Interval> mean_interval(double estimate, std::span<const double> d
     squares += each * each;
     cubes += each * each * each;
   }
-  if (deviations.size() < fewest_for_mean(confidence) || !(squares > 0) ||
-      !is_confidence(confidence) || !std::isfinite(squares) || !std::isfinite(estimate)) {
+  const int degrees = int(deviations.size()) - 1;
+  if (degrees < 3 || !(squares > 0) || !is_confidence(confidence) || !std::isfinite(squares) ||
+      !std::isfinite(estimate)) {
     return std::nullopt;
   }
   const double error = std::sqrt(squares / (n - 1) / n);
-  const double t = student_quantile((1 + confidence) / 2, int(deviations.size()) - 1);
+  const double t = student_quantile((1 + confidence) / 2, degrees);
   Interval interval{estimate - error * t, estimate + error * t};
   // G1, and a little more: small samples understate skewness. The factor is by simulation.
   const double skewness =
@@ -132,6 +133,12 @@ std::optional<Interval> mean_interval(double estimate, std::span<const double> d
     };
     interval.low = std::min(interval.low, estimate - error * untransformed(t));
     interval.high = std::max(interval.high, estimate - error * untransformed(-t));
+  }
+  if (deviations.size() < fewest_for_mean(confidence)) {
+    // The sample may lack a tail altogether; a third of the degrees, by simulation, allows for it.
+    const double wide = error * student_quantile((1 + confidence) / 2, degrees / 3);
+    interval.low = std::min(interval.low, estimate - wide);
+    interval.high = std::max(interval.high, estimate + wide);
   }
   return interval;
 }

@@ -116,14 +116,15 @@ std::size_t fewest_units(double confidence, double q = 0.5);
 std::optional<Interval> quantile_interval(std::span<const double> sample, double q, double units,
                                           double confidence);
 
-/// The minimum number of units for an interval of a mean: fewer show too little of a long tail. 10
-/// for 95 %.
+/// The minimum number of units for a mean at this confidence: fewer show too little of a long tail.
+/// 10 for 95 %.
 std::size_t fewest_for_mean(double confidence);
 
 /// The interval of a mean with the given deviations from it, one per independent unit: that of
 /// Student's t, and where the sample's skewness exceeds its standard error, also what Hall's
 /// transformation makes of it (P. Hall, Journal of the Royal Statistical Society B 54, 1992,
-/// 221–228). Nothing for fewer than fewest_for_mean, or if all deviations are zero: how wide the
+/// 221–228). Of fewer units than fewest_for_mean also that of Student's t with a third of the
+/// degrees of freedom. Nothing for fewer than 4, or if all deviations are zero: how wide the
 /// interval is cannot be seen then.
 std::optional<Interval> mean_interval(double estimate, std::span<const double> deviations,
                                       double confidence);
