@@ -57,6 +57,27 @@ TEST(ReportComparisons, EqualRepetitionsCountOnceInEveryNumber) {
   EXPECT_EQ(files.at("figures/boxes-plan_time_s.svg").find("count once"), std::string::npos);
 }
 
+TEST(ReportComparisons, CaptionsSayWhichRepetitionsCountOnce) {
+  // p0 and p1 repeat themselves, p2 does not.
+  StudyData data = study(3, 4, 2);
+  for (RunRow& row : data.rows) {
+    const int drawn = row.pipeline == 2 ? row.repetition : 0;
+    row.values[1] = 1000.0 + 10 * double(row.scenario) + double(row.pipeline) + drawn;
+  }
+  const auto files = written(data);
+  const std::string of_both = "the repetitions of two pipelines count once if those of both";
+  const std::string& table = files.at("tables/pairs-length_m.md");
+  EXPECT_NE(table.find(of_both), std::string::npos) << table;
+  EXPECT_NE(table.find("| 4 | 4 |"), std::string::npos) << "p0 and p1" << table;
+  EXPECT_NE(table.find("| 8 | 8 |"), std::string::npos) << "p0 and p2" << table;
+  EXPECT_NE(files.at("tables/success-pairs.md").find(of_both), std::string::npos);
+  EXPECT_NE(files.at("tables/metrics.md").find("of a pipeline count once if they are equal"),
+            std::string::npos);
+  const std::string& common = files.at("tables/common.md");
+  EXPECT_EQ(common.find("count once"), std::string::npos) << common;
+  EXPECT_NE(common.find("| Length, m | p0 | 8 |"), std::string::npos) << common;
+}
+
 TEST(ReportComparisons, EqualRepetitionsOfOneScenarioAreNoRanking) {
   StudyData data = study(3, 1, 5);
   for (RunRow& row : data.rows) {

@@ -255,6 +255,13 @@ class Benchmarks(StudyCase):
             shares = {row["pipeline"]: float(row["with_a_route"]) for row in csv.DictReader(stream)}
         self.assertEqual(shares["geometric_RRT"], 0.5, "its progress has no costs: it has a route when it ends")
 
+    def test_no_command_repeats_their_runs(self):
+        self.reported(self.benchmark("INSERT INTO enums VALUES('status', 7, 'Crash');"
+                                     "UPDATE runs SET status = 7 WHERE id = 4;"))
+        failures = self.read("page/index.html").partition("Unexplained failures")[2].partition("</table>")[0]
+        self.assertIn("city[seed=1] #1", failures)
+        self.assertNotIn("altiplan replay", failures)
+
     def test_two_of_one_experiment(self):
         """Their runs of one planner are further repetitions; limits of time that differ are none."""
         other = self.benchmark("UPDATE experiments SET timelimit = 1;", "other.db")

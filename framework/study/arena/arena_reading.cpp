@@ -238,6 +238,7 @@ class ArenaReader {
       row.scenario = scenario->second;
       row.pipeline = pipeline->second;
       row.repetition = repetitions[{row.scenario, row.pipeline}]++;
+      row.is_imported = true;
       row.seed = seeds_[statement.integer(1)];
       row.key = "arena " + file_.string() + " " + std::to_string(row.id);
       std::map<std::string, double> values;

@@ -16,6 +16,7 @@ struct RunRow : RunFacts {
   std::size_t store = 0;     ///< index into StudyData::stores; `id` is the run's in this store
   std::size_t scenario = 0;  ///< index into StudyData::scenarios
   std::size_t pipeline = 0;
+  bool is_imported = false;  ///< from another program's database: it cannot be replayed
   /// One per StudyData::columns, to 12 significant digits; NaN if it does not apply.
   std::vector<double> values;
 

@@ -104,6 +104,7 @@ class MetricAnalyser {
         column_(data.column(metric)),
         is_of_every_run_(is_of_every_run(metric)) {
     analysis_.metric = metric;
+    analysis_.repeating = is_measured(metric) ? Repeating::none : repeating(data);
     analysis_.better = better(data, metric);
   }
 
@@ -141,7 +142,6 @@ class MetricAnalyser {
         Sample& sample = analysis_.samples[row.pipeline];
         if (repeat_[row.pipeline] && !sample.rows.empty() &&
             data_.rows[sample.rows.back()].scenario == row.scenario) {
-          analysis_.has_equal_repetitions = true;
           continue;
         }
         sample.values.push_back(found);
@@ -307,11 +307,7 @@ Analysis analyse(const StudyData& data, bool times) {
   const std::vector<Pair> pairs = pairs_of(data);
   analysis.success = success_of(data);
   analysis.success_comparisons = compare_success(data, pairs);
-  const std::vector<bool> repeat = repeat_themselves(data);
-  analysis.has_equal_repetitions =
-      std::adjacent_find(data.rows.begin(), data.rows.end(), [&](const RunRow& a, const RunRow& b) {
-        return repeat[a.pipeline] && a.pipeline == b.pipeline && a.scenario == b.scenario;
-      }) != data.rows.end();
+  analysis.repeating = repeating(data);
   std::set<std::string> files;  // of figures, named by their metric
   for (const std::string& metric : compared_metrics(data)) {
     if (!files.insert(slug(metric)).second) {

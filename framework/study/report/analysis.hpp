@@ -78,11 +78,14 @@ struct Sample {
   std::optional<BoxPlot> box;
 };
 
+/// The number of pipelines whose repetitions are equal, of which one counts.
+enum class Repeating { none, one, some, all };
+
 struct MetricAnalysis {
   std::string metric;
   Better better = Better::lower;
-  std::vector<Sample> samples;         ///< one per pipeline
-  bool has_equal_repetitions = false;  ///< of which one counts
+  std::vector<Sample> samples;            ///< one per pipeline
+  Repeating repeating = Repeating::none;  ///< none if it is measured
   bool is_ratio = false;  ///< effects are ratios (all values positive), otherwise differences
   std::vector<Comparison> comparisons;
   std::optional<Ranking> ranking;
@@ -105,7 +108,7 @@ struct Trade {
 struct Analysis {
   std::vector<Success> success;  ///< one per pipeline
   std::vector<SuccessComparison> success_comparisons;
-  bool has_equal_repetitions = false;  ///< of any pipeline
+  Repeating repeating = Repeating::none;
   std::vector<MetricAnalysis> metrics;
   std::vector<Trade> trades;          ///< of each two metrics of one's own
   std::vector<std::string> left_out;  ///< sentences on metrics that no run has, and trades
@@ -140,6 +143,9 @@ std::vector<Pair> pairs_of(const StudyData& data);
 /// Those with values of their own of the metric: if all pipelines repeat themselves, one of each
 /// scenario; all of a time or memory.
 std::vector<Pair> distinct_pairs(const StudyData& data, const std::string& metric);
-/// For captions: " (equal repetitions count once)" if there are any.
-std::string equal_repetitions(bool any);
+Repeating repeating(const StudyData& data);
+/// What a table or figure has: each pipeline's values, pairs of two pipelines, pairs of all.
+enum class Counted { values, pairs, common_pairs };
+/// For captions: " (equal repetitions count once)", in which of them; "" if none do.
+std::string counted_once(Repeating repeating, Counted counted);
 }  // namespace altiplan::study::report

@@ -176,7 +176,7 @@ class BoxPanel {
 std::string caption_of(const MetricAnalysis& metric, std::size_t panels, std::size_t runs,
                        std::size_t hidden) {
   std::string caption = counted(runs, "solved run") +
-                        equal_repetitions(metric.has_equal_repetitions) +
+                        counted_once(metric.repeating, Counted::values) +
                         ". Box: quartiles and median; whiskers: the last value within 1.5 "
                         "interquartile ranges; points: outliers, or all of up to " +
                         std::to_string(kFew) + " runs.";

@@ -104,7 +104,7 @@ Grid numbers_of(const StudyData& data, const MetricAnalysis& metric) {
 std::string caption_of(const MetricAnalysis& metric, const Rows& rows) {
   const bool less_is_better = metric.better == Better::lower;
   std::string caption = "Median over the pairs that both solved" +
-                        equal_repetitions(metric.has_equal_repetitions) + " of " +
+                        counted_once(metric.repeating, Counted::pairs) + " of " +
                         (metric.is_ratio ? "A / B" : "A − B") +
                         ", with its 95 % interval. Left of the dashed line A, the first "
                         "pipeline, has "

@@ -224,5 +224,29 @@ std::vector<Pair> distinct_pairs(const StudyData& data, const std::string& metri
   return pairs;
 }
 
-std::string equal_repetitions(bool any) { return any ? " (equal repetitions count once)" : ""; }
+Repeating repeating(const StudyData& data) {
+  const std::vector<bool> repeat = repeat_themselves(data);
+  const bool any =
+      std::adjacent_find(data.rows.begin(), data.rows.end(), [&](const RunRow& a, const RunRow& b) {
+        return repeat[a.pipeline] && a.pipeline == b.pipeline && a.scenario == b.scenario;
+      }) != data.rows.end();
+  const auto count = std::count(repeat.begin(), repeat.end(), true);
+  return !any                                     ? Repeating::none
+         : count == std::ptrdiff_t(repeat.size()) ? Repeating::all
+         : count > 1                              ? Repeating::some
+                                                  : Repeating::one;
+}
+
+std::string counted_once(Repeating repeating, Counted counted) {
+  if (repeating == Repeating::all) {
+    return " (equal repetitions count once)";
+  }
+  if (counted == Counted::values && repeating != Repeating::none) {
+    return " (the repetitions of a pipeline count once if they are equal)";
+  }
+  if (counted == Counted::pairs && repeating == Repeating::some) {
+    return " (the repetitions of two pipelines count once if those of both are equal)";
+  }
+  return "";
+}
 }  // namespace altiplan::study::report

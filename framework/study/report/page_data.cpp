@@ -107,6 +107,12 @@ std::string page_data(const Content& content, const Table& scenarios) {
     }
     json["runs"].push_back(std::move(run));
   }
+  json["imported"] = host::Json::array();
+  for (std::size_t at = 0; at < data.rows.size(); ++at) {
+    if (data.rows[at].is_imported) {
+      json["imported"].push_back(at);
+    }
+  }
   json["outcomes"] = outcomes.take();
   json["stores"] = host::Json::array({"DB"});  // independent of the number of stores
   if (content.times) {

@@ -144,7 +144,7 @@ Table failure_table(const Content& content) {
     message.kind = "message";
     Cell example(content.data.scenarios[row.scenario].name + " #" + std::to_string(row.repetition));
     example.open = "run " + std::to_string(group.rows.front());
-    Cell command = code(replay_command(content, row));
+    Cell command = row.is_imported ? Cell("–") : code(replay_command(content, row));
     table.rows.push_back({name(content, group.pipeline), outcome_text(group.outcome), message,
                           count(group.rows.size()), example, command});
   }
@@ -238,7 +238,7 @@ Table par_table(const Content& content) {
 Table success_comparison_table(const Content& content) {
   Table table{"success-pairs",
               "Success, pipeline against pipeline" +
-                  equal_repetitions(content.analysis.has_equal_repetitions) +
+                  counted_once(content.analysis.repeating, Counted::pairs) +
                   ": exact sign test over n scenarios (repetitions "
                   "if there is one scenario), Holm's correction over all rows; the difference of "
                   "the shares "
@@ -262,7 +262,7 @@ Table success_comparison_table(const Content& content) {
 
 Table metric_table(const Content& content) {
   Table table{"metrics",
-              "Values of solved runs" + equal_repetitions(content.analysis.has_equal_repetitions),
+              "Values of solved runs" + counted_once(content.analysis.repeating, Counted::values),
               columns({"metric", "pipeline", "#runs", "#median", "[quartiles", "#mean", "#least",
                        "#greatest"}),
               {}};
@@ -289,7 +289,7 @@ Table common_table(const Content& content) {
   const StudyData& data = content.data;
   Table table{"common",
               "Values over the pairs (scenario, repetition) that all pipelines solved" +
-                  equal_repetitions(content.analysis.has_equal_repetitions),
+                  counted_once(content.analysis.repeating, Counted::common_pairs),
               columns({"metric", "pipeline", "#pairs", "#median", "#mean", "#least", "#greatest"}),
               {}};
   for (const MetricAnalysis& metric : content.analysis.metrics) {
@@ -326,7 +326,7 @@ Table comparison_table(const Content& content, const MetricAnalysis& metric) {
       "pairs-" + slug(metric.metric),
       metric_label(metric.metric) + ", pipeline against pipeline on the pairs that both solved (" +
           (metric.better == Better::lower ? "lower" : "higher") + " is better)" +
-          equal_repetitions(metric.has_equal_repetitions) +
+          counted_once(metric.repeating, Counted::pairs) +
           ": Wilcoxon's signed-rank test over n scenarios (repetitions if "
           "there is one scenario), Holm's correction over all rows",
       columns({"pipeline", "against", metric.is_ratio ? "#median ratio" : "#median difference",

@@ -93,6 +93,11 @@ function scene_part(data, run) {
     shell_word(run_name(data, run));
   const why = data.why_not.get(run.index);
   const parts = [];
+  if (data.imported.includes(run.index)) {
+    return [element('p', {className: 'quiet'},
+      'This run comes from the database of another program: it has no scene, and no command ' +
+      'repeats it.')];
+  }
   if (scene === undefined) {
     parts.push(element('p', {className: 'quiet'}, 'This page has no 3-D scene of this run' +
       `${why ? `: ${why}` : ''}. To reproduce the run:`));
