@@ -267,6 +267,25 @@ class Hostile(Reports):
         self.assertIn("<script>", self.text("#panel h2"))
 
 
+class Imported(Reports):
+    """Runs of a benchmark database, which no command repeats."""
+    @classmethod
+    def content(cls):
+        return studies.made_up(4, 2, 1)
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        database = os.path.join(cls.folder, "arena.db")
+        report(cls.store, os.path.join(cls.folder, "exported"), "--arena", database)
+        cls.report = report(database, os.path.join(cls.folder, "imported"))
+
+    def test_a_run_says_where_it_comes_from(self):
+        self.click("#boxes-length_m path[data-open]")
+        self.assertIn("no command repeats it", self.text("#panel"))
+        self.assertEqual(self.js("return document.querySelectorAll('#panel pre').length"), 0)
+
+
 class Variants(Reports):
     """A grid of 12 variants, with names as long as grids give them."""
     @classmethod
