@@ -38,6 +38,7 @@ def off(height=50):
 
 
 HOME, UP = do(20), to(84, 0, 0, 50)
+SECOND = [off(), way(400, 0), to(21, 400, 0, 0), do(211, 1), do(93, 5), off(), way(800, 0)]
 # Name, vehicle, items, zone (west, south, east, north, floor, ceiling), parameters, rule or words of the refusal.
 MISSIONS = [
     ("a return from a jump that jumps for ever", PLANE, [way(0, 0, 100), way(800, 0, 100), do(177, 3, -1)],
@@ -79,8 +80,9 @@ MISSIONS = [
     ("a return above the ground", COPTER, [off(), way(400, 0), HOME], None, {"RTL_ALT_TYPE": 1}, "RTL_ALT_TYPE"),
     ("a return to a landing", PX4_COPTER,
      [off(), way(400, 0), HOME, do(189), to(21, 100, 100, 0)], None, {"RTL_TYPE": 1}, "RTL_TYPE"),
-    ("a second flight after a landing", COPTER, [off(), way(400, 0), to(21, 400, 0, 0), off(), way(800, 0)], None,
-     {"MIS_OPTIONS": 4}, "MIS_OPTIONS"),
+    ("a second flight after a landing", COPTER, SECOND, (550, -50, 650, 50, 0, 2000), {"MIS_OPTIONS": 4}, "clearance"),
+    ("the same with parameters nobody knows", COPTER, SECOND, (550, -50, 650, 50, 0, 2000), {}, "clearance"),
+    ("a landing on the way, within a zone", COPTER, SECOND, (390, -10, 410, 10, 0, GROUND + 30), {}, "the landing"),
     ("the autopilot's own ceiling", COPTER, [off(), way(100, 0, 150)], None, {"FENCE_ENABLE": 1}, "FENCE_ALT_MAX"),
     ("the autopilot's own circle", COPTER, [off(), way(400, 0)], None, {"FENCE_ENABLE": 1}, "FENCE_RADIUS"),
     ("the same, switched on in flight", COPTER, [off(), do(207, 1), way(400, 0)], None, {}, "FENCE_RADIUS"),
@@ -199,6 +201,10 @@ class Dangerous(PlanCase):
                 ("low, and places within each other's reach", PX4_COPTER, [off(4), way(20, 0, 4), to(21, 20.4, 0, -1)],
                  None, {}),
                 ("a VTOL", VTOL, [UP, way(900, 0), way(900, 900), HOME], None, {}),
+                ("a second flight", COPTER, SECOND, (550, 50, 650, 90, 0, 2000), {"MIS_OPTIONS": 4}),
+                ("none after a landing that ends it", COPTER, SECOND, (550, -50, 650, 50, 0, 2000), {"MIS_OPTIONS": 0}),
+                ("none where it disarms", COPTER, SECOND, (550, -50, 650, 50, 0, 2000),
+                 {"MIS_OPTIONS": 4, "DISARM_DELAY": 5}),
                 ("a fence that is wide", COPTER, [off(), way(200, 0)], None, {"FENCE_ENABLE": 1}),
                 ("no wind", PLANE, [way(-1500, 0, 100), way(0, 0, 100), way(0, 1500, 100), HOME],
                  (70, 20, 100, 120, 0, 2000), {})):

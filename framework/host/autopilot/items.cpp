@@ -33,7 +33,7 @@ bool Walker::fly_hover(std::size_t n) {
       hover_->climb(n, "the climb after placing", top_low, top_high);
       return false;
     }
-    return true;
+    return !takes_off_again(n);
   }
   if (task == Task::loiter_turns && is_copter && command.params[2] == 0) {
     // It turns in yaw at 20 degrees a second on its way to the centre, its height unchanged.
@@ -102,6 +102,43 @@ bool Walker::fly_hover(std::size_t n) {
     return true;
   }
   return false;
+}
+
+// AP_Mission::continue_after_land_check_for_takeoff, Copter::auto_disarm_check. What is not known
+// of the parameters is judged as if the flight went on, which holds the one that ends here.
+bool Walker::takes_off_again(std::size_t n) {
+  constexpr int kContinueAfterLand = 1 << 2;
+  if (is_px4() || !autopilot_.is_copter()) {  // PX4 refuses a second take-off
+    return false;
+  }
+  double waits_s = 0;
+  std::size_t next = n + 1;
+  for (; next < commands_.size(); ++next) {
+    const Task task = task_of(next);
+    if (task == Task::delay) {
+      const double seconds = commands_[next].params[0];
+      waits_s += seconds > 0 ? seconds : kInfinity;  // until a time of day
+    } else if (task != Task::payload && task != Task::speed) {
+      break;
+    }
+  }
+  if (next == commands_.size() ||
+      (task_of(next) != Task::take_off && task_of(next) != Task::vtol_take_off)) {
+    return false;
+  }
+  const double disarms_s = parameter("DISARM_DELAY");
+  const bool disarms = disarms_s > 0 && waits_s >= disarms_s;
+  if ((flight_.is_given("MIS_OPTIONS") && !(int(parameter("MIS_OPTIONS")) & kContinueAfterLand)) ||
+      (flight_.is_given("DISARM_DELAY") && disarms)) {
+    return false;
+  }
+  if (!flight_.is_given("MIS_OPTIONS") || disarms) {
+    flight_.remark(Weight::note, "takes_off_again", n,
+                   std::string("takes off again with MIS_OPTIONS 4") +
+                       (disarms ? " and DISARM_DELAY 0 or above its wait" : "") +
+                       " alone: else the flight ends here");
+  }
+  return true;
 }
 
 void Walker::arrive(std::size_t n, const Destination& to) {

@@ -44,6 +44,8 @@ const Row kRows[] = {
     {"RTL_CONE_SLOPE", {3, kNone, kNone, kNone}},
     {"RTL_ALT_TYPE", {0, kNone, kNone, kNone}},
     {"LAND_SPD_MS", {0.5, kNone, kNone, kNone}, "LAND_SPEED", kCm},
+    {"MIS_OPTIONS", {0, kNone, kNone, kNone}},
+    {"DISARM_DELAY", {10, kNone, kNone, kNone}},
     {"RALLY_LIMIT_KM", {0.3, 5, kNone, kNone}},
     {"RALLY_INCL_HOME", {1, 0, kNone, kNone}},
     {"FENCE_ENABLE", {0, 0, kNone, kNone}},
@@ -112,7 +114,8 @@ constexpr std::string_view kMayBeZero[] = {
     "FENCE_ALT_MIN",   "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",
     "ALT_SLOPE_MIN",   "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
     "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
-    "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN"};
+    "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
+    "MIS_OPTIONS",     "DISARM_DELAY"};
 
 void expect_possible(const Row& row, const ParameterValue& given) {
   const double value = given.value;

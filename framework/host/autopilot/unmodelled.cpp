@@ -71,7 +71,7 @@ constexpr Unmodelled kUnmodelled[] = {
     {"COM_HOME_IN_AIR", 0, 0, is_of_px4, "home is set in the air"},
 };
 
-/// The same where it matters to a return alone, or where commands follow a landing.
+/// The same where it matters to a return alone.
 constexpr Unmodelled kOfReturns[] = {
     {"RTL_ALT_TYPE", 0, 0, is_ardupilots_copter, "a return at a height above the ground"},
     {"RTL_SPEED_MS", 0, 0, is_ardupilots_copter, "a return at another speed"},
@@ -79,9 +79,6 @@ constexpr Unmodelled kOfReturns[] = {
     {"RTL_LOIT_TIME", 5000, 0, is_ardupilots_copter, "another wait above home"},
     {"RTL_LAND_DELAY", 0, 0, is_px4s_copter, "a wait above home"},
     {"RTL_LOITER_RAD", 80, 0, is_px4s_wing, "another circle above home"},
-};
-constexpr Unmodelled kOfLandings[] = {
-    {"MIS_OPTIONS", 0, 1 << 2, is_ardupilots_copter, "it takes off again after its landing"},
 };
 
 bool has_effect(const Unmodelled& one, Autopilot autopilot, const ParameterFile& file) {
@@ -109,9 +106,6 @@ void Walker::remark_parameters() {
     const Task task = task_of(n);
     if (task == Task::return_home) {
       remark_return_parameters(n);
-    }
-    if (task == Task::land && n + 1 < commands_.size()) {
-      remark(kOfLandings[0], n, flight_, options_);
     }
     if (formats::is_above_ground(commands_[n].frame) && formats::flies_to_position(task) &&
         is_of_ardupilot(autopilot_) && options_.parameters.contains("TERRAIN_ENABLE") &&

@@ -118,6 +118,8 @@ class Walker {
   // Hovering vehicles.
 
   bool fly_hover(std::size_t n);
+  /// True if the flight may go on after the landing `n`.
+  bool takes_off_again(std::size_t n);
 
   /// Flies straight to a place, unless it is there.
   void arrive(std::size_t n, const Destination& to);
