@@ -70,13 +70,23 @@ std::string item(const std::string& list, std::size_t index) {
   return list + "." + std::to_string(index);
 }
 
-Location place_of(const Value& map, std::string_view key) {
-  for (const Value::Entry& entry : map.entries) {
-    if (entry.key == key) {
-      return entry.where;
+Location place_of(const Value& value, std::string_view key) {
+  const std::size_t dot = key.find('.');
+  const std::string_view first = key.substr(0, dot);
+  const auto within = [&](const Value& inner, const Location& where) {
+    return dot == key.npos ? where : place_of(inner, key.substr(dot + 1));
+  };
+  for (const Value::Entry& entry : value.entries) {
+    if (entry.key == first) {
+      return within(entry.value, entry.where);
     }
   }
-  return map.where;
+  for (std::size_t n = 0; n < value.items.size(); ++n) {
+    if (std::to_string(n) == first) {
+      return within(value.items[n], value.items[n].where);
+    }
+  }
+  return value.where;
 }
 
 std::string Ids::free_id(const std::string& name) {

@@ -57,8 +57,8 @@ class Ids : public std::set<std::string> {
 /// "steps.3"
 std::string item(const std::string& list, std::size_t index);
 
-/// Location of a key of a map; of the map itself if it has no such key.
-Location place_of(const Value& map, std::string_view key);
+/// Location of a key such as "stops.3.hold_s"; of what holds it if it is not there.
+Location place_of(const Value& value, std::string_view key);
 
 /// "; did you mean 'x'?", or "".
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
