@@ -278,7 +278,7 @@ class Go(unittest.TestCase):
             self.refused(said, *terrain, "--from", given, *ENDS[2:])
         for given in ("-84.38", "-84.38,36.48,1,1", "-84.38, 36.48", "x,y", "nan,36"):
             self.refused("expected LON,LAT", *terrain, "--from", given, *ENDS[2:], code=2)
-        self.refused("the same point", *terrain, *ENDS[:2], "--to", "-84.38,36.48")
+        self.refused("--to: expected a way of 1 m or more from --from", *terrain, *ENDS[:2], "--to", "-84.38,36.48")
         self.refused("expected a time such as", *terrain, *ENDS, "--start-time", "2026-13-01")
         self.refused("from 0.0 to 10000.0", *terrain, *ENDS, "--min-agl", "100000", code=2)
         self.refused("from 1.0 to 5000.0", *terrain, *ENDS, "--wing", "30000", code=2)

@@ -375,6 +375,8 @@ class Survey(unittest.TestCase):
         self.refused("which 4 have", area, *terrain, "--camera", "sony", "--gsd-cm", "2")
         for gsd in ("0", "nan", "2cm"):
             self.refused(f"found '{gsd}'", area, *terrain, *CAMERA[:2], "--gsd-cm", gsd, code=2)
+        speck = self.write(kml(RIDGE, [(0, 0), (0.2, 0), (0.2, 0.2)]), "speck.kml")
+        self.refused("speck.kml: corner 3: expected a way of 1 m or more", speck, *terrain, *CAMERA)
         self.refused("--max-agl: 60 m is below the 85.79 m", area, *terrain, *CAMERA, "--max-agl", "60")
         self.refused("--sidelap", area, *terrain, *CAMERA, "--sidelap", "20")
         self.write("sensor_mm: [23.5, 15.6]\nimage_px: [6000, 4000]\nfocal: 16\n", "bad.yaml")

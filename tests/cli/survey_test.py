@@ -75,6 +75,17 @@ class Surveys(unittest.TestCase):
                     self.assertLess(answer["items_differ_m"], 0.1)
                     self.assertLessEqual(answer["coverage"], 1)
 
+    def test_without_a_distance_of_lines(self):
+        for distance in (0, None):
+            plan = plan_of(self.cases[0], self.cases[0]["sphere"])
+            camera = plan["mission"]["items"][0]["TransectStyleComplexItem"]["CameraCalc"]
+            camera["AdjustedFootprintSide"] = distance
+            if distance is None:
+                del camera["AdjustedFootprintSide"]
+            code, said = check_json(plan)
+            self.assertEqual(code, 3)
+            self.assertIn("AdjustedFootprintSide", said)
+
     def test_what_was_changed_is_found(self):
         plan = plan_of(self.cases[0], self.cases[0]["sphere"])
         items = plan["mission"]["items"][0]["TransectStyleComplexItem"]["Items"]

@@ -50,7 +50,8 @@ Corridor::Corridor(const RouteWish& wish, Registry& registry)
     length_m_ += points_.size() > 1 ? (points_.back() - points_[points_.size() - 2]).norm() : 0;
   }
   if (length_m_ < 1) {
-    throw Error("--to: start and goal are the same point: give two that are apart");
+    throw Error(wished_.back().option + ": expected a way of 1 m or more from " + from.option +
+                ", found " + with_digits(length_m_, 2) + " m");
   }
 }
 

@@ -36,8 +36,8 @@ QgcSurvey settings_of(const JsonNode& item) {
   survey.spacing_m = camera.at("AdjustedFootprintSide").number();
   survey.trigger_m = camera.at("AdjustedFootprintFrontal").number();
   survey.height_m = camera.at("DistanceToSurface").number();
-  if (!(survey.spacing_m >= 0 && survey.spacing_m < 1e6)) {
-    camera.at("AdjustedFootprintSide").wrong("a distance of lines (m)");
+  if (!(survey.spacing_m > 0 && survey.spacing_m < 1e6)) {
+    camera.at("AdjustedFootprintSide").wrong("a distance of lines above 0 m");
   }
   survey.turnaround_m = style.at("TurnAroundDistance").number();
   survey.triggers_in_turnaround = style.at("CameraTriggerInTurnAround").boolean();

@@ -22,9 +22,9 @@ struct Params {
   std::optional<double> min_gsd_cm;
   std::optional<double> max_gsd_cm;
   std::optional<double> trigger_m;
-  double min_overlap = 0.75;
+  std::optional<double> min_overlap;
   std::optional<double> spacing_m;
-  double min_sidelap = 0.7;
+  std::optional<double> min_sidelap;
   AppliesTo applies_to = AppliesTo::both;
 
   void describe(Fields& f) {
@@ -40,13 +40,15 @@ struct Params {
     f("trigger_m", trigger_m).unit("m").greater_than(0).doc("distance of photos along the flight");
     f("min_overlap", min_overlap)
         .range(0, 0.99)
-        .doc("with trigger_m: share of a photo that the next one shows, too, of the ground below");
+        .doc(
+            "with trigger_m: share of a photo that the next one shows, too, of the ground below "
+            "(default 0.75)");
     f("spacing_m", spacing_m).unit("m").greater_than(0).doc("distance of lines side by side");
     f("min_sidelap", min_sidelap)
         .range(0, 0.99)
         .doc(
             "with spacing_m: share of a photo that one of the next line, from the same height, "
-            "shows, too, of the ground below");
+            "shows, too, of the ground below (default 0.7)");
     f("applies_to", applies_to,
       {{"both", AppliesTo::both}, {"route", AppliesTo::route}, {"track", AppliesTo::track}})
         .doc(
@@ -54,10 +56,14 @@ struct Params {
             "for the flight");
     f.check(min_gsd_cm || max_gsd_cm || trigger_m || spacing_m,
             "expected min_gsd_cm, max_gsd_cm, trigger_m or spacing_m");
+    f.check(!min_overlap || trigger_m, "min_overlap: expected with trigger_m, found without it");
+    f.check(!min_sidelap || spacing_m, "min_sidelap: expected with spacing_m, found without it");
     f.check(min_gsd_cm.value_or(0) < max_gsd_cm.value_or(1e9),
             "expected min_gsd_cm below max_gsd_cm");
   }
 
+  double overlap() const { return min_overlap.value_or(0.75); }
+  double sidelap() const { return min_sidelap.value_or(0.7); }
   double gsd_cm(double height) const {
     return 100 * height * sensor_mm[0] / (image_px[0] * focal_mm);
   }
@@ -76,10 +82,10 @@ class Photos final : public Constraint {
   explicit Photos(const Params& params) : params_(params) {
     lowest_ = params.min_gsd_cm ? params.height_of(*params.min_gsd_cm) : -kInfinity;
     overlapping_ = params.trigger_m
-                       ? params.height_of_shared(*params.trigger_m, kAlong, params.min_overlap)
+                       ? params.height_of_shared(*params.trigger_m, kAlong, params.overlap())
                        : -kInfinity;
     beside_ = params.spacing_m
-                  ? params.height_of_shared(*params.spacing_m, kAcross, params.min_sidelap)
+                  ? params.height_of_shared(*params.spacing_m, kAcross, params.sidelap())
                   : -kInfinity;
     highest_ = params.max_gsd_cm ? params.height_of(*params.max_gsd_cm) : kInfinity;
   }
@@ -130,11 +136,11 @@ class Photos final : public Constraint {
           "a pixel shows %.3f cm; at most %.3f cm are permitted");
     }
     if (low < overlapping_ - kLengthTolerance && low > 0) {
-      add(low_at, params_.shared(*params_.trigger_m, kAlong, low), params_.min_overlap, "",
+      add(low_at, params_.shared(*params_.trigger_m, kAlong, low), params_.overlap(), "",
           "photos have an overlap of %.3f; at least %.3f is required");
     }
     if (low < beside_ - kLengthTolerance && low > 0) {
-      add(low_at, params_.shared(*params_.spacing_m, kAcross, low), params_.min_sidelap, "",
+      add(low_at, params_.shared(*params_.spacing_m, kAcross, low), params_.sidelap(), "",
           "photos have a side overlap of %.3f; at least %.3f is required");
     }
     return all;

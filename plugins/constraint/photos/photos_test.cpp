@@ -44,6 +44,10 @@ TEST(Photos, RefusesWrongParameters) {
   EXPECT_NE(problems(kCamera + "min_overlap: 0.5"), "");
   EXPECT_NE(problems(kCamera + "min_sidelap: 0.5"), "");
   EXPECT_EQ(problems(kCamera + "spacing_m: 5"), "");
+  EXPECT_NE(problems(kCamera + "max_gsd_cm: 2, min_sidelap: 0.8").find("min_sidelap"),
+            std::string::npos);
+  EXPECT_NE(problems(kCamera + "spacing_m: 5, min_overlap: 0.8").find("min_overlap"),
+            std::string::npos);
   EXPECT_NE(problems(kCamera + "max_gsd_cm: 2, min_gsd_cm: 2"), "");
   EXPECT_NE(problems("sensor_mm: [0, 1], image_px: [9, 9], focal_mm: 9, max_gsd_cm: 2"), "");
   EXPECT_NE(problems("max_gsd_cm: 2"), "");
