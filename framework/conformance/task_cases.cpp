@@ -14,24 +14,12 @@ constexpr const char* kClear = "Task contract 2: passes and joins do not cross o
 constexpr const char* kBudget =
     "Task contract 3: the budget is kept; more of it never makes the time longer";
 constexpr const char* kBound =
-    "Task contract 4: time_s is that of the passes and joins, and no order of the passes takes "
+    "Task contract 4: time_s is that of passes, joins and stops, and no order of the passes takes "
     "less than bound_s";
-
-/// All waypoints of an order, from the first to the last.
-Polyline waypoints(const TaskOrder& order, const TaskEnds& ends) {
-  Polyline all{order.first(ends)};
-  for (const Pass& pass : order.passes) {
-    all.insert(all.end(), pass.join.begin(), pass.join.end());
-    all.insert(all.end(), pass.points.begin(), pass.points.end());
-  }
-  all.insert(all.end(), order.last_join.begin(), order.last_join.end());
-  all.push_back(order.last(ends));
-  return without_repeats(all);
-}
 
 void is_clear(const TaskBench& bench, Report& report) {
   const auto task = bench.made();
-  const Polyline route = waypoints(task->order(bench.within(100), {}), {});
+  const Route route = task->order(bench.within(100), {}).route({}, bench.request);
   const std::shared_ptr<const Environment> solid = task->obstacles();
   for (std::size_t i = 1; i < route.size() && solid != nullptr; ++i) {
     report.expect(!solid->blocked(route[i - 1], route[i], 0), kClear, [&] {
@@ -62,9 +50,10 @@ void keeps_budget(const TaskBench& bench, Report& report) {
 void is_bounded(const TaskBench& bench, Report& report) {
   const auto task = bench.made();
   const TaskOrder order = task->order(bench.within(100), {});
-  const double flown = flown_time(Route(waypoints(order, {})), bench.request);
+  const double flown = flown_time(order.route({}, bench.request), bench.request);
   report.expect(std::abs(flown - order.time_s) <= 1e-6 * flown, kBound, [&] {
-    return "its passes and joins take " + text(flown) + " s, its time is " + text(order.time_s);
+    return "its passes, joins and stops take " + text(flown) + " s, its time is " +
+           text(order.time_s);
   });
   RandomStream random = bench.request.random.sub("shuffle");
   const std::shared_ptr<const Environment> solid = task->obstacles();
@@ -80,12 +69,12 @@ void is_bounded(const TaskBench& bench, Report& report) {
     for (Pass& pass : other.passes) {
       pass.join.clear();
     }
-    const Polyline route = waypoints(other, {});
+    const Route route = other.route({}, bench.request);
     bool valid = true;
     for (std::size_t i = 1; i < route.size() && solid != nullptr; ++i) {
       valid = valid && !solid->blocked(route[i - 1], route[i], 0);
     }
-    const double takes = flown_time(Route(route), bench.request);
+    const double takes = flown_time(route, bench.request);
     report.expect(!valid || takes >= order.bound_s * (1 - 1e-9), kBound, [&] {
       return "the passes in another order take " + text(takes) + " s, its bound is " +
              text(order.bound_s);

@@ -74,6 +74,22 @@ std::string flown_in_words(const host::RunResult& result) {
   return words;
 }
 
+std::string stops_in_words(const host::RunResult& result) {
+  std::string words;
+  for (const Pass& pass : result.task ? result.task->passes : std::vector<Pass>{}) {
+    const auto& [hold_s, lands, drops] = pass.stop;
+    if (pass.stop.acts()) {
+      const std::string seconds = hold_s > 0 ? host::with_digits(hold_s, 6) + " s" : "";
+      words += (words.empty() ? "" : "; ") +
+               (!lands            ? "waits " + seconds
+                : seconds.empty() ? "lands"
+                                  : "lands for " + seconds) +
+               (drops ? " and drops its cargo" : "") + " at " + host::place(pass.points.back());
+    }
+  }
+  return words;
+}
+
 void print_metrics(std::FILE* to, const char* of, const host::MetricValues& metrics) {
   for (const auto& [name, value] : metrics) {
     std::fprintf(to, "  %s of the %s: %s\n", name.c_str(), of, host::with_digits(value, 6).c_str());

@@ -14,6 +14,9 @@ namespace altiplan::cli {
 /// Wh, reserve 20 %), up to 3.912 km from the start; up to 43.0 degrees down, at 2.2 m/s"; "" where
 /// nothing is known of the vehicle besides its speed.
 std::string flown_in_words(const host::RunResult& result);
+/// "waits 30 s at (400, 0, 50); lands for 20 s and drops its cargo at (90, 10, 60)", of a task; ""
+/// where it does nothing at its places.
+std::string stops_in_words(const host::RunResult& result);
 
 /// "  exposure of the route: 12.3", a line for each; nothing without any.
 void print_metrics(std::FILE* to, const char* of, const host::MetricValues& metrics);

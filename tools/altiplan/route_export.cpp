@@ -46,6 +46,7 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
     return std::nullopt;
   }
   source.route = *stored.route;
+  source.stops = stored.stops;
   return source;
 }
 

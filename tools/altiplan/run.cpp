@@ -115,6 +115,9 @@ void print_table(std::FILE* to, const host::RunResult& result) {
   if (const std::string flown = flown_in_words(result); !flown.empty()) {
     std::fprintf(to, "  flown in %s\n", flown.c_str());
   }
+  if (const std::string stops = stops_in_words(result); !stops.empty()) {
+    std::fprintf(to, "  stops: %s\n", stops.c_str());
+  }
   if (result.accepted) {
     print_metrics(to, "route", result.steps[*result.accepted].metrics);
   }

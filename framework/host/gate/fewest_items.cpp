@@ -30,16 +30,25 @@ using Edge = std::pair<std::size_t, std::size_t>;
 /// A place where an item may be.
 struct Node {
   Vec3 at;
-  bool must = false;  ///< an end, or a via point
+  bool must = false;  ///< an end, a via point, or where it waits
+  double hold_s = 0;
 };
 
-std::vector<Node> nodes_of(const Route& route, const std::vector<std::size_t>& via) {
+/// A task's passes are flown as they are.
+std::vector<Node> nodes_of(const Route& route, const Mission& mission) {
+  const std::vector<std::size_t> via = via_indices(route, mission.via);
   const auto must = [&](std::size_t n) {
-    return n == 0 || n + 1 == route.size() || std::find(via.begin(), via.end(), n) != via.end();
+    return mission.task || n == 0 || n + 1 == route.size() ||
+           std::find(via.begin(), via.end(), n) != via.end();
   };
   std::vector<Node> nodes{{route.front(), true}};
   for (std::size_t n = 0; n < route.leg_count(); ++n) {
     const Leg leg = route.leg(n);
+    if (leg.waits()) {
+      nodes.back().must = true;
+      nodes.back().hold_s += leg.hold_s;
+      continue;
+    }
     if (leg.turns()) {
       const double pieces = std::max(1.0, std::ceil(std::abs(leg.turn) / kPieceOfTurn));
       for (double i = 0; i < pieces; ++i) {
@@ -66,7 +75,8 @@ Request request_of_legs(Request request) {
 class FewestSearch {
  public:
   FewestSearch(const Mission& mission, const ExportSource& source, const ExportOptions& options)
-      : nodes_(nodes_of(source.route, via_indices(source.route, mission.via))),
+      : nodes_(nodes_of(source.route, mission)),
+        stops_(source.stops),
         request_(request_of_legs(mission.request)),
         mission_(mission),
         known_(mission),
@@ -147,10 +157,14 @@ class FewestSearch {
     MissionText text = written;
     std::vector<MissionPlace> places;
     text.local.clear();
+    text.holds_s.clear();
+    text.stops.clear();
     for (const std::size_t n : chosen) {
-      places.push_back({nodes_[n].at});
+      places.push_back({nodes_[n].at, std::nullopt, nodes_[n].hold_s});
       text.local.push_back(nodes_[n].at);
+      text.holds_s.push_back(std::ceil(nodes_[n].hold_s));
     }
+    tell_stops(places, stops_, mission_, place_, text);
     if (const auto& loiter = mission_.request.goal.loiter) {
       formats::MissionCircle circle;
       circle.until = formats::MissionCircle::Until::forever;
@@ -190,6 +204,7 @@ class FewestSearch {
   }
 
   std::vector<Node> nodes_;
+  const std::vector<PlacedStop>& stops_;
   Request request_;
   const Mission& mission_;
   Mission known_;  ///< in the world that the planner knew

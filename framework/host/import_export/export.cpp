@@ -22,8 +22,9 @@ using Zones = RouteFormat::Zones;
 /// The problem of the vertical climb and descent of what can hover, which are not part of the
 /// route: a layer that they come too near to, except the ground, where they begin and end; "" if
 /// none.
-std::string column_problem(const Mission& mission, const Route& route, const Placing& place,
+std::string column_problem(const Mission& mission, const ExportSource& source, const Placing& place,
                            const ExportOptions& options) {
+  const Route& route = source.route;
   Vec3 home = route.front();
   home.z() = place.home().altitude_m;
   const Vec3 down = landing(mission, route, place);
@@ -39,6 +40,12 @@ std::string column_problem(const Mission& mission, const Route& route, const Pla
     if (options.land && blocked(down, route.back())) {
       return "the descent from the last point passes too close to '" + layer.id + "'";
     }
+    for (const auto& [at, stop] : source.stops) {
+      if (stop.lands && blocked(landing(mission, {at}, place), at)) {
+        return "the landing at the stop " + host::place(at) + " passes too close to '" + layer.id +
+               "'";
+      }
+    }
   }
   return "";
 }
@@ -51,6 +58,29 @@ std::string first_wait(const Route& route) {
     }
   }
   return "";
+}
+
+/// What autopilots make of the stops that do more than wait.
+void note_stops(const std::vector<PlacedStop>& stops, std::vector<std::string>& notes) {
+  std::size_t landings = 0;
+  std::size_t drops = 0;
+  double longest_s = 0;
+  for (const auto& [at, stop] : stops) {
+    landings += stop.lands ? 1 : 0;
+    drops += stop.drops ? 1 : 0;
+    longest_s = std::max(longest_s, stop.lands ? stop.hold_s : 0);
+  }
+  if (drops > 0) {
+    notes.push_back(counted(drops, "drop") + " written as DO_GRIPPER, release");
+  }
+  if (landings > 0) {
+    notes.push_back("warning: lands and takes off again at " + counted(landings, "stop") +
+                    ": ArduPilot's copter does so with MIS_OPTIONS 4 alone" +
+                    (longest_s > 0 ? ", and waits for " + with_digits(longest_s, 4) +
+                                         " s on the ground with DISARM_DELAY 0 or above that"
+                                   : "") +
+                    "; else, and with PX4, the flight may end there");
+  }
 }
 
 /// The mission without its items.
@@ -73,6 +103,12 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
     return true;
   }
   const bool flown = !source.times.empty();
+  if (mission.task && !flown) {
+    messages.push_back("not written: the route needs " + std::to_string(items) +
+                       " items, more than --max-items " + std::to_string(*options.max_items) +
+                       ": a task's passes are flown as they are");
+    return false;
+  }
   const std::size_t count = source.route.size();
   const std::size_t max_points = count - std::min(count, items - *options.max_items);
   const std::vector<std::size_t> kept = thinned(
@@ -186,6 +222,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
         "waits written as hold times of waypoints, in whole seconds, as ArduPilot knows no others, "
         "and judged so");
   }
+  note_stops(source.stops, notes);
   if (source.times.empty()) {
     source.via = via_indices(source.route, mission.via);
   }
@@ -194,7 +231,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     return result;
   }
   const Placing place(mission, options, source.route.front());
-  if (const std::string problem = column_problem(mission, source.route, place, options);
+  if (const std::string problem = column_problem(mission, source, place, options);
       !problem.empty()) {
     result.messages.push_back("not written: " + problem);
     return result;

@@ -8,6 +8,7 @@
 #include "host/flight/track_judge.hpp"
 #include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
+#include "host/result/stored_result.hpp"
 
 namespace altiplan::host {
 
@@ -36,6 +37,7 @@ struct ExportSource {
   std::vector<double> times;        ///< of a flight, one per point
   std::vector<FlightEvent> events;  ///< of the flight
   bool telemetry = false;           ///< the flight was a vehicle's
+  std::vector<PlacedStop> stops{};  ///< in order, where the route waits for them
   std::vector<std::size_t> via{};   ///< waypoints at via points; export_route finds a route's
 };
 

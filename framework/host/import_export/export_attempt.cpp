@@ -60,9 +60,6 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
     if (items.front().circle) {
       throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
     }
-    if (places.front().hold_s > 0) {
-      throw Error("--takeoff: the route waits at its first point, which a take-off cannot say");
-    }
     items.front().kind = MissionItem::Kind::takeoff;
   }
   if (options.land) {
@@ -82,6 +79,20 @@ Vec3 landing(const Mission& mission, const Route& route, const Placing& place) {
   Vec3 down = route.back();
   down.z() = mission.truth.ground(down.x(), down.y()).value_or(place.home().altitude_m);
   return down;
+}
+
+bool tell_stops(const std::vector<MissionPlace>& places, const std::vector<PlacedStop>& stops,
+                const Mission& mission, const Placing& place, MissionText& text) {
+  std::size_t told = 0;
+  for (std::size_t n = 0; n < places.size() && told < stops.size(); ++n) {
+    const auto& [at, stop] = stops[told];
+    if (places[n].hold_s > 0 && (places[n].at - at).norm() <= kLengthTolerance) {
+      const double ground_m = stop.lands ? place(landing(mission, {at}, place)).altitude_m : 0;
+      text.stops[n] = {stop, rounded(ground_m, text.decimals.metres)};
+      ++told;
+    }
+  }
+  return told == stops.size();
 }
 
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
@@ -112,7 +123,13 @@ namespace {
 
 WrittenRoute places_of(const Mission& mission, const ExportSource& source,
                        const ExportOptions& options, double tolerance) {
-  return written_route(source.route, {options.loiters, tolerance}, source.via, mission.request);
+  WrittenRoute written =
+      written_route(source.route, {options.loiters, tolerance}, source.via, mission.request);
+  std::vector<MissionPlace>& places = written.places;
+  if (options.takeoff && places.front().hold_s > 0) {  // it waits after its take-off
+    places.insert(places.begin(), {places.front().at});
+  }
+  return written;
 }
 
 /// Of a flight, its own times; its speeds are what the vehicle made of them.
@@ -255,6 +272,12 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
       attempt.problem.clear();
       now = attempt.with_decimals(as_turns ? beside_turns(mission.request) : mission.request, true,
                                   decimals);
+    }
+    if (now && !source.stops.empty()) {
+      if (!tell_stops(written.places, source.stops, mission, place, attempt.text)) {
+        return {std::nullopt, {"not written: the route does not wait at each stop of its task"}};
+      }
+      now = options.format->write(attempt.text);
     }
     if (now) {
       Exported result = attempt.exported(std::move(*now), decimals);

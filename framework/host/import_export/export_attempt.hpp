@@ -17,6 +17,11 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
                                            const ExportOptions& options,
                                            const std::vector<PlaceTiming>& timing);
 
+/// Has an item for each place do what the stop there asks for, instead of its wait. False if a stop
+/// is at none of them.
+bool tell_stops(const std::vector<MissionPlace>& places, const std::vector<PlacedStop>& stops,
+                const Mission& mission, const Placing& place, MissionText& text);
+
 /// The first violation of the route as written and read back; "" if it is valid.
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
                        const Request& request);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "altiplan/formats/mission_file.hpp"
 #include "altiplan/route.hpp"
+#include "altiplan/task.hpp"
 #include "host/base/words.hpp"
 #include "host/config/scenario_file.hpp"
 
@@ -16,6 +18,12 @@ namespace altiplan::host {
 struct Decimals {
   int degrees = 7;
   int metres = 3;
+};
+
+/// What is done at an item besides waiting.
+struct ItemStop {
+  Stop stop{};
+  double ground_m = 0;  ///< below it, in the items' altitude frame
 };
 
 /// A route, or a mission, and the settings of its text.
@@ -29,8 +37,9 @@ struct MissionText {
   Decimals decimals;
   /// Expected time at each item, seconds since the route's start; empty: unknown.
   std::vector<double> times_s;
-  std::vector<double> holds_s;         ///< waits at each item, whole seconds; empty: none
-  std::optional<double> start_time_s;  ///< of the route, since 1970-01-01 UTC
+  std::vector<double> holds_s;            ///< waits at each item, whole seconds; empty: none
+  std::map<std::size_t, ItemStop> stops;  ///< by item, in place of its wait
+  std::optional<double> start_time_s;     ///< of the route, since 1970-01-01 UTC
 };
 
 /// The value of `rounded_text`.

@@ -90,6 +90,33 @@ PlanItem item_of(const MissionItem& item, const MissionText& text) {
   return result;
 }
 
+/// What is done at the place of the last item. ArduPilot's copter takes a landing for the end,
+/// unless a take-off follows, behind delays at most.
+void add_stop(const ItemStop& at, std::vector<PlanItem>& items) {
+  const Stop& stop = at.stop;
+  const double hold_s = std::ceil(stop.hold_s);
+  const PlanItem place = items.back();
+  if (stop.lands) {
+    items.push_back(place);
+    items.back().command = Command::kLand;
+    items.back().params[6] = at.ground_m;
+  } else {
+    items.back().params[0] = hold_s;
+  }
+  if (stop.drops) {
+    constexpr double kFirst = 1;
+    constexpr double kRelease = 0;
+    items.push_back({Command::kGripper, kMissionFrame, {kFirst, kRelease}});
+  }
+  if (stop.lands && hold_s > 0) {
+    items.push_back({Command::kDelay, kMissionFrame, {hold_s}});
+  }
+  if (stop.lands) {
+    items.push_back(place);
+    items.back().command = Command::kTakeoff;
+  }
+}
+
 /// Holes of a keep-in zone become keep-out zones; those of a keep-out zone cannot be expressed.
 std::vector<PlanItem> fence_of(const std::vector<formats::Zone>& zones, const Decimals& decimals) {
   std::vector<PlanItem> fence;
@@ -145,7 +172,9 @@ Plan plan_of(const MissionText& text) {
       plan.items.push_back(speed_item(speed_mps, text.decimals.metres));
     }
     plan.items.push_back(item_of(item, text));
-    if (n < text.holds_s.size() && text.holds_s[n] > 0) {
+    if (const auto stop = text.stops.find(n); stop != text.stops.end()) {
+      add_stop(stop->second, plan.items);
+    } else if (n < text.holds_s.size() && text.holds_s[n] > 0) {
       plan.items.back().params[0] = text.holds_s[n];
     }
   }

@@ -120,6 +120,22 @@ Json lonlat_json(const Route& route, const Frame& frame) {
   return json;
 }
 
+/// Of passes after which something is done.
+Json stops_json(const std::vector<Pass>& passes) {
+  Json stops = Json::array();
+  for (const Pass& pass : passes) {
+    const Vec3& at = pass.points.back();
+    const Stop& stop = pass.stop;
+    if (stop.acts()) {
+      stops.push_back({{"at_m", {at.x(), at.y(), at.z()}},
+                       {"hold_s", stop.hold_s},
+                       {"lands", stop.lands},
+                       {"drops", stop.drops}});
+    }
+  }
+  return stops;
+}
+
 /// A map of keys to values; where something is removed, which may happen twice at one key, a list.
 Json set_json(const std::vector<std::string>& set) {
   const bool removes = std::any_of(set.begin(), set.end(),
@@ -321,11 +337,10 @@ Json result_json(const Config& config, const RunResult& result) {
     json["reference"] = *config.scenario.reference;
   }
   if (result.task) {
-    json["task"] = {{"plugin", config.scenario.task->plugin},
-                    {"passes", result.task->passes.size()},
-                    {"flights", result.task->flights},
-                    {"time_s", number(result.task->time_s)},
-                    {"bound_s", number(result.task->bound_s)}};
+    json["task"] = {
+        {"plugin", config.scenario.task->plugin},  {"passes", result.task->passes.size()},
+        {"flights", result.task->flights},         {"time_s", number(result.task->time_s)},
+        {"bound_s", number(result.task->bound_s)}, {"stops", stops_json(result.task->passes)}};
   }
   json["flight"] = result.flight ? flight_json(*result.flight) : Json(nullptr);
   json["trace"] = result.trace ? Json(*result.trace) : Json(nullptr);

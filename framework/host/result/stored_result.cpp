@@ -172,12 +172,39 @@ void take_files_along(Json& json, const std::string& file) {
 }
 }  // namespace
 
+namespace {
+/// Those that do something, of a result's task.
+std::vector<PlacedStop> stops_of(const Json& json, const std::string& file) {
+  std::vector<PlacedStop> stops;
+  if (!json.contains("task") || !json.at("task").contains("stops")) {
+    return stops;
+  }
+  for (const Json& each : json.at("task").at("stops")) {
+    const std::string place = file + ": task.stops." + std::to_string(stops.size());
+    const bool is_whole = each.is_object() && each.contains("at_m") && is_point(each["at_m"], 3) &&
+                          each.value("hold_s", Json()).is_number() &&
+                          each.value("lands", Json()).is_boolean() &&
+                          each.value("drops", Json()).is_boolean();
+    if (!is_whole || !(each["hold_s"].get<double>() >= 0)) {
+      throw Error(place + ": expected at_m, hold_s, lands and drops, found " + found_text(each));
+    }
+    const Json& at = each["at_m"];
+    stops.push_back(
+        {{at[0].get<double>(), at[1].get<double>(), at[2].get<double>()},
+         {each["hold_s"].get<double>(), each["lands"].get<bool>(), each["drops"].get<bool>()}});
+  }
+  return stops;
+}
+}  // namespace
+
 StoredResult read_result(const std::string& file, const Overrides& overrides) {
   return stored_result(file, read_json(file, "a result of altiplan run"), overrides);
 }
 
 StoredResult stored_result(const std::string& file, Json content, const Overrides& overrides) {
-  StoredResult stored{file, std::move(content), {}, {}, {}, {}, false, {}};
+  StoredResult stored;
+  stored.file = file;
+  stored.json = std::move(content);
   Json& json = stored.json;
   try {
     if (!json.is_object() || !json.contains("altiplan") || json.at("altiplan") != kFileFormat) {
@@ -196,6 +223,7 @@ StoredResult stored_result(const std::string& file, Json content, const Override
     }
     if (!json.at("route").is_null()) {
       stored.route = route_of(json, file);
+      stored.stops = stops_of(json, file);
     }
     if (!json.at("flight").is_null()) {
       const Json& flight = json.at("flight");

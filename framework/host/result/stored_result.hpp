@@ -13,6 +13,12 @@
 
 namespace altiplan::host {
 
+/// What the vehicle does at a place of a task.
+struct PlacedStop {
+  Vec3 at{0, 0, 0};
+  Stop stop{};
+};
+
 /// A result.json read back: its route and track, and what is needed to rebuild its world
 /// (`load_config(pipeline, overrides)`).
 struct StoredResult {
@@ -21,6 +27,7 @@ struct StoredResult {
   std::filesystem::path pipeline;
   Overrides overrides;  ///< of the run
   std::optional<Route> route;
+  std::vector<PlacedStop> stops;  ///< of the route's task, in order
   std::optional<Track> track;
   bool telemetry = false;            ///< the track is that of a vehicle at a link
   std::vector<std::string> changed;  ///< input files that have changed since the result was written

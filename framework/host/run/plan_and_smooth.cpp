@@ -109,7 +109,7 @@ std::optional<PlanResult> Run::order_task(const Request& request) {
     failed.budget_hit = order.budget_hit;
     return failed;
   }
-  task_.emplace(std::move(order), mission_.ends);
+  task_.emplace(std::move(order), mission_.ends, mission_.request);
   for (Request* mission : {&mission_.request, &mission_.track_request}) {
     mission->start.position = task_->start();
     mission->goal.position = task_->goal();
@@ -197,7 +197,14 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   std::size_t piece = 0;
   std::string messages;  // one message per section: a smoother sees only its own
   PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
-    PlanResult result = smoother.smooth(before.part(from, cuts[piece]), part);
+    const Route section = before.part(from, cuts[piece]);
+    PlanResult result;
+    if (section.leg_count() == 1 && section.leg(0).waits()) {  // a stop of a task
+      result.status = PlanStatus::solved;
+      result.route = section;
+    } else {
+      result = smoother.smooth(section, part);
+    }
     if (!result.message.empty()) {
       messages += (messages.empty() ? "to " : "; to ") +
                   (piece == fixed.size() ? "the goal" : "via point " + std::to_string(piece)) +

@@ -23,7 +23,7 @@ void Run::judge_step(StepResult& step, const Request& request) {
     if (step.status == RunStatus::solved) {  // first: the judge knows the cause
       step.check = judge(step.route, request, mission_.via);
       if (task_) {
-        if (auto unflown = task_->violation(step.route)) {
+        if (auto unflown = task_->violation(step.route, request)) {
           step.check->violations.push_back(*std::move(unflown));
         }
       }

@@ -151,19 +151,12 @@ class Cover final : public Task {
                                               : found.message;
       return order;
     }
-    Polyline flown;
-    if (ends.start) {
-      flown.push_back(*ends.start);
-    }
     for (const WingRow& row : found.rows) {
-      Polyline pass = pass_of(row);
-      flown.insert(flown.end(), pass.begin(), pass.end());
-      order.passes.push_back({std::move(pass)});
+      order.passes.push_back({pass_of(row)});
     }
     order.status = PlanStatus::solved;
     order.closes = params_.closed;
-    flown.push_back(order.last(ends));
-    order.time_s = flown_time(Route(without_repeats(flown)), request);
+    order.time_s = flown_time(order.route(ends, request), request);
     return order;  // nothing is known of other orders: the bound stays 0
   }
 

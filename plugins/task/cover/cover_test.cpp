@@ -25,14 +25,7 @@ Request copter() {
 }
 
 Polyline waypoints(const TaskOrder& order, const TaskEnds& ends) {
-  Polyline all{order.first(ends)};
-  for (const Pass& pass : order.passes) {
-    all.insert(all.end(), pass.join.begin(), pass.join.end());
-    all.insert(all.end(), pass.points.begin(), pass.points.end());
-  }
-  all.insert(all.end(), order.last_join.begin(), order.last_join.end());
-  all.push_back(order.last(ends));
-  return without_repeats(all);
+  return order.route(ends, copter()).waypoints();
 }
 
 /// Share of the free places of a hectare that the passes alone come within 1.5 m of.

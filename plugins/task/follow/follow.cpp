@@ -121,33 +121,23 @@ class Follow final : public Task {
   /// Passes in their order, each from the end that is nearer; the first from the start's side.
   TaskOrder do_order(const Request& request, const TaskEnds& ends) const override {
     TaskOrder order;
-    Polyline flown;
     std::optional<Vec3> here = ends.start;
-    if (here) {
-      flown.push_back(*here);
-    }
-    const auto fly_to = [&](Polyline& join, const Vec3& to) {
-      if (here) {
-        join = between(*here, to);
-        flown.insert(flown.end(), join.begin(), join.end());
-      }
-    };
     for (Polyline pass : passes_) {
       if (here && (pass.back() - *here).norm() < (pass.front() - *here).norm()) {
         std::reverse(pass.begin(), pass.end());
       }
       Pass& next = order.passes.emplace_back();
-      fly_to(next.join, pass.front());
+      if (here) {
+        next.join = between(*here, pass.front());
+      }
       here = pass.back();
-      flown.insert(flown.end(), pass.begin(), pass.end());
       next.points = std::move(pass);
     }
     if (ends.goal) {
-      fly_to(order.last_join, *ends.goal);
-      flown.push_back(*ends.goal);
+      order.last_join = between(*here, *ends.goal);
     }
     order.status = PlanStatus::solved;
-    order.time_s = flown_time(Route(without_repeats(flown)), request);
+    order.time_s = flown_time(order.route(ends, request), request);
     return order;  // nothing is known of other orders: the bound stays 0
   }
 

@@ -14,8 +14,20 @@ namespace {
 
 struct StopParams {
   Point at;
+  double hold_s = 0;
+  bool land = false;
+  bool drop = false;
 
-  void describe(Fields& f) { f.point(at).required().doc("place to pass"); }
+  void describe(Fields& f) {
+    f.point(at).required().doc("place to pass");
+    f("hold_s", hold_s).unit("s").range(0, 65'535).doc("wait, on the ground with `land`");
+    f("land", land).doc("go down to the ground, and up again");
+    f("drop", drop).doc("let go of the cargo after the wait, which takes 1 s or more");
+  }
+
+  /// The vehicle has to be still to drop something where it should.
+  Stop stop() const { return {drop ? std::max(hold_s, 1.0) : hold_s, land, drop}; }
+  const char* first_key() const { return land ? "land" : drop ? "drop" : "hold_s"; }
 };
 
 struct Params {
@@ -126,10 +138,33 @@ class Visit final : public Task {
       } catch (const Error& error) {
         throw ParameterError("stops", "stop " + std::to_string(i) + ": " + error.what());
       }
+      expect_possible(i, site);
     }
   }
 
  private:
+  void expect_possible(std::size_t i, const Site& site) const {
+    const StopParams& stop = params_.stops[i];
+    const Vec3& at = stops_[i];
+    const auto refuse = [&](const std::string& why) {
+      throw ParameterError("stops." + std::to_string(i) + "." + stop.first_key(), why);
+    };
+    if (!stop.stop().acts()) {
+      return;
+    }
+    if (site.vehicle.wing) {
+      refuse("an aeroplane cannot wait in one place, or land and take off again on its way");
+    }
+    if (const auto same = std::find(stops_.begin(), stops_.begin() + std::ptrdiff_t(i), at);
+        same != stops_.begin() + std::ptrdiff_t(i)) {
+      refuse("expected at a place of its own, found at that of stop " +
+             std::to_string(same - stops_.begin()));
+    }
+    if (stop.land && !site.before->ground(at.x(), at.y())) {
+      refuse("no ground is known there: give a layer with ground, such as terrain");
+    }
+  }
+
   Box do_bounds() const override {
     Box box = Box::empty();
     for (const Vec3& p : stops_) {
@@ -155,27 +190,24 @@ class Visit final : public Task {
       std::tie(order, bound_s) = searched(times, request, watch, rounds);
       made.budget_hit = rounds < std::uint64_t(params_.rounds);
     }
-    Polyline flown;
-    if (start) {
-      flown.push_back(*start);
-    }
     for (const std::size_t i : order) {
-      made.passes.push_back({{stops_[i]}});
-      flown.push_back(stops_[i]);
+      made.passes.push_back({{stops_[i]}, {}, false, params_.stops[i].stop()});
     }
     if (closes && !ends.start) {  // from the first place, wherever it came in the order
       const auto first = std::find_if(made.passes.begin(), made.passes.end(),
                                       [&](const Pass& p) { return p.points[0] == stops_[0]; });
       std::rotate(made.passes.begin(), first, made.passes.end());
     }
-    if (goal) {
-      flown.push_back(*goal);
-    }
     made.status = PlanStatus::solved;
     made.closes = closes;
-    made.time_s = flown_time(Route(without_repeats(flown)), request);
+    made.time_s = flown_time(made.route(ends, request), request);
     made.counters = {{"expanded", std::int64_t(rounds)}};
-    made.bound_s = bound_of(stops_.size() <= kExact ? made.time_s : bound_s, request, made.time_s);
+    double stops_s = 0;  // in any order
+    for (std::size_t i = 0; i < stops_.size(); ++i) {
+      stops_s += params_.stops[i].stop().seconds(stops_[i], request);
+    }
+    const double legs_s = made.time_s - stops_s;
+    made.bound_s = stops_s + bound_of(stops_.size() <= kExact ? legs_s : bound_s, request, legs_s);
     return made;
   }
 
@@ -228,5 +260,6 @@ class Visit final : public Task {
 }  // namespace
 }  // namespace altiplan::visit
 
-ALTIPLAN_PLUGIN(Task, "visit", altiplan::visit::Visit, altiplan::visit::Params,
-                "passes places in the best order, exactly up to twelve")
+ALTIPLAN_PLUGIN(
+    Task, "visit", altiplan::visit::Visit, altiplan::visit::Params,
+    "passes places in the best order, exactly up to twelve; holds, lands and drops there")

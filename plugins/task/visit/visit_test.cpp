@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "altiplan/flown_route.hpp"
+#include "support/posts.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::visit_task_test {
@@ -80,6 +81,111 @@ TEST(Visit, FindsTheOrderThatBruteForceFinds) {
       }
     }
   }
+}
+
+/// Places at which something is done, over ground that slopes up to the east.
+struct Errands {
+  std::vector<Vec3> at;
+  std::vector<Stop> stops;
+  World world = testing::world_of(std::make_shared<testing::Posts>(
+      HeightField({-1000, -1000}, {2000, 2000}, 2, 2, {0, 20, 0, 20})));
+
+  Errands(std::size_t count, std::uint64_t seed) : at(places(count, seed)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      stops.push_back({i % 3 == 2 ? 0 : 5.0 + double(i), i % 2 == 1, i % 5 == 4});
+    }
+  }
+  Request request() const {
+    Request request = copter();
+    request.world = std::make_shared<const World>(world);
+    return request;
+  }
+  std::unique_ptr<Task> task(bool closed) const {
+    std::string text = "{closed: " + std::string(closed ? "true" : "false") + ", stops: [";
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      text += "{at_m: [" + std::to_string(at[i].x()) + ", " + std::to_string(at[i].y()) + ", " +
+              std::to_string(at[i].z()) + "], hold_s: " + std::to_string(stops[i].hold_s) +
+              ", land: " + (stops[i].lands ? "true" : "false") +
+              ", drop: " + (stops[i].drops ? "true" : "false") + "}, ";
+    }
+    return testing::make_task("visit", text + "]}", world);
+  }
+  /// Of a landing with the ways down and up by hand.
+  double seconds(std::size_t i) const {
+    const double wait_s = stops[i].drops ? std::max(1.0, stops[i].hold_s) : stops[i].hold_s;
+    const Vec3 foot(at[i].x(), at[i].y(), (at[i].x() + 1000) / 100);
+    return wait_s + (stops[i].lands ? flown_time(Route{at[i], foot}, copter()) +
+                                          flown_time(Route{foot, at[i]}, copter())
+                                    : 0);
+  }
+  double sum() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      sum += seconds(i);
+    }
+    return sum;
+  }
+};
+
+TEST(Visit, WithStopsFindsTheOrderThatBruteForceFinds) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Errands errands(5, seed);
+    for (const bool closed : {false, true}) {
+      for (const TaskEnds& ends : {TaskEnds{}, TaskEnds{Vec3(0, 0, 30), {}}}) {
+        const TaskOrder order = errands.task(closed)->order(errands.request(), ends);
+        EXPECT_NEAR(order.time_s, minimum(errands.at, ends, closed) + errands.sum(), 1e-3);
+        EXPECT_NEAR(order.bound_s, order.time_s, 1e-9);
+        ASSERT_EQ(order.passes.size(), 5U);
+        for (const Pass& pass : order.passes) {
+          const auto found = std::find_if(errands.at.begin(), errands.at.end(), [&](const Vec3& p) {
+            return (p - pass.points[0]).norm() < 1e-5;
+          });
+          ASSERT_NE(found, errands.at.end());
+          const auto i = std::size_t(found - errands.at.begin());
+          EXPECT_EQ(pass.stop.lands, errands.stops[i].lands);
+          EXPECT_EQ(pass.stop.drops, errands.stops[i].drops);
+          EXPECT_NEAR(pass.stop.seconds(pass.points[0], errands.request()), errands.seconds(i),
+                      1e-4);
+        }
+        EXPECT_NEAR(flown_time(order.route(ends, errands.request()), errands.request()),
+                    order.time_s, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Visit, StopsAddToTimeAndBoundWhatTheyTake) {
+  const Errands errands(30, 11);
+  const TaskOrder with = errands.task(true)->order(errands.request(), {});
+  const TaskOrder without =
+      testing::make_task("visit", parameters(errands.at, true))->order(errands.request(), {});
+  EXPECT_NEAR(with.time_s, without.time_s + errands.sum(), 1e-3);
+  EXPECT_NEAR(with.bound_s, without.bound_s + errands.sum(), 1e-3);
+}
+
+TEST(Visit, RefusesStopsThatCannotBe) {
+  const auto refused = [](const std::string& stops, bool has_wing) {
+    World world;
+    try {
+      auto task = testing::make_task("visit", "{stops: [" + stops + "]}", world);
+      Request request = copter();
+      if (has_wing) {
+        request.vehicle.wing.emplace();
+      }
+      task->order(request, {});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string place = "{at_m: [0, 0, 50]";
+  EXPECT_EQ(refused(place + ", hold_s: 3}", false), "");
+  EXPECT_NE(refused(place + ", land: true}", false).find("no ground is known"), std::string::npos);
+  EXPECT_NE(refused(place + "}, " + place + ", drop: true}", false).find("that of stop 0"),
+            std::string::npos);
+  EXPECT_NE(refused(place + ", hold_s: 3}", true).find("an aeroplane stops"), std::string::npos);
+  EXPECT_NE(testing::parameter_problems("task", "visit", "{stops: [" + place + ", hold_s: -1}]}"),
+            "");
 }
 
 TEST(Visit, OfManyPlacesItIsNearItsBound) {

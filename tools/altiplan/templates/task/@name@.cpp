@@ -38,17 +38,8 @@ class Nearest final : public Task {
       left.erase(next);
     }
     // The bound stays 0: nothing is known of other orders.
-    order.time_s = flown_time(flown(order, ends), request);
+    order.time_s = flown_time(order.route(ends, request), request);
     return order;
-  }
-
-  static Route flown(const TaskOrder& order, const TaskEnds& ends) {
-    Polyline points{order.first(ends)};
-    for (const Pass& pass : order.passes) {
-      points.push_back(pass.points[0]);
-    }
-    points.push_back(order.last(ends));
-    return without_repeats(points);
   }
 
   Box do_bounds() const override {
