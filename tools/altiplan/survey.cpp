@@ -12,6 +12,7 @@
 #include "host/view/viewer_page.hpp"
 #include "progress.hpp"
 #include "survey_flights.hpp"
+#include "survey_item.hpp"
 
 namespace altiplan::cli {
 namespace {
@@ -91,7 +92,7 @@ void write_page(const fs::path& folder, const SurveyArguments& arguments) {
 }
 
 host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
-                   const host::Camera& camera, const fs::path& folder) {
+                   const host::Camera& camera, const fs::path& folder, const std::string& item) {
   const host::LegHeights heights = heights_of(surveyed.flights);
   const std::vector<Polyline> lines = surveyed.lines();
   host::Json flights = host::Json::array();
@@ -119,7 +120,8 @@ host::Json json_of(const Surveyed& surveyed, const host::FirstRoute& first,
           {"lines", lines.size()},
           {"images", photos_of(lines, first.lines().trigger_m)},
           {"gsd_cm", {100 * camera.gsd_m(heights.lowest), 100 * camera.gsd_m(heights.highest)}},
-          {"flights", flights}};
+          {"flights", flights},
+          {"survey_item", item}};
 }
 
 void print(const Surveyed& surveyed, const host::FirstRoute& first, const host::Camera& camera,
@@ -189,8 +191,12 @@ int survey(SurveyArguments arguments) {
     return kNoRoute;
   }
   const host::Camera& camera = wish.survey->camera;
+  const std::string item =
+      first->areas().empty() || !surveyed.passed()
+          ? ""
+          : write_survey_item(folder, arguments, *wish.survey, *first, surveyed);
   if (arguments.json) {
-    std::cout << host::file_text(json_of(surveyed, *first, camera, folder));
+    std::cout << host::file_text(json_of(surveyed, *first, camera, folder, item));
   } else {
     print(surveyed, *first, camera, wish.wind.has_value());
     const std::size_t plans = surveyed.flights.size();
@@ -199,6 +205,9 @@ int survey(SurveyArguments arguments) {
                 plans == 1 ? "route.plan"
                            : ("route-1.plan to route-" + std::to_string(plans) + ".plan").c_str());
     print_checks(surveyed);
+    if (!item.empty()) {
+      std::printf("%s\n", item.c_str());
+    }
   }
   return surveyed.passed() ? kDone : kNoRoute;
 }
