@@ -97,9 +97,9 @@ class Item(unittest.TestCase):
         area = AREAS["quadrilateral"]
         for n, (rings, options, words) in enumerate((
                 ([CONCAVE], (), "it flies across the corners of a concave area"),
-                ([area, ISLAND], (), "it has no islands"),
-                ([area], ("--flight-minutes", "7"), "it has one flight"),
-                ([area], ("--wing", "40", "--scale-tolerance", "20"), "it has no turns of an aeroplane's rows"))):
+                ([area, ISLAND], (), "it knows no islands"),
+                ([area], ("--flight-minutes", "7"), "it is one flight"),
+                ([area], ("--wing", "40", "--scale-tolerance", "20"), "it knows no turns of an aeroplane"))):
             with self.subTest(words):
                 name = f"out{n}"
                 self.assertIn("no survey.plan, of QGroundControl's survey item: " + words,

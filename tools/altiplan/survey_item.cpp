@@ -36,11 +36,11 @@ bool is_convex(const formats::Ring& ring) {
 std::string reason_against(const SurveyArguments& arguments, const host::FirstRoute& first,
                            const Surveyed& surveyed) {
   const std::vector<formats::Polygon>& areas = first.areas();
-  return arguments.wish.turn_radius_m        ? "it has no turns of an aeroplane's rows"
-         : areas.size() != 1                 ? "it has one area"
-         : !areas.front().holes.empty()      ? "it has no islands"
+  return arguments.wish.turn_radius_m        ? "it knows no turns of an aeroplane"
+         : areas.size() != 1                 ? "it takes one area alone"
+         : !areas.front().holes.empty()      ? "it knows no islands"
          : !is_convex(areas.front().outline) ? "it flies across the corners of a concave area"
-         : surveyed.flights.size() != 1      ? "it has one flight"
+         : surveyed.flights.size() != 1      ? "it is one flight"
                                              : "";
 }
 

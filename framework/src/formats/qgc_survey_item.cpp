@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "altiplan/formats/qgc_survey.hpp"
@@ -110,11 +111,11 @@ SurveyItem survey_item(const SurveySettings& settings, int first_number) {
   const std::vector<SurveyCommand> commands = survey_commands(survey, SurveyPlane::sphere);
   const std::vector<Place> places = places_of(commands);
   SurveyItem item;
-  double photos = 0;
+  int photos = 0;
   for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
     item.lines.push_back(
         {Point2{places[i].lon, places[i].lat}, Point2{places[i + 1].lon, places[i + 1].lat}});
-    photos += std::ceil(distance(places[i], places[i + 1]) / settings.trigger_m);
+    photos += int(std::ceil(distance(places[i], places[i + 1]) / settings.trigger_m));
   }
   Json items = Json::array();
   for (const SurveyCommand& command : commands) {
