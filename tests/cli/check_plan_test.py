@@ -73,6 +73,11 @@ class CheckPlan(PlanCase):
                                   cwd=self.folder, capture_output=True, text=True, timeout=600)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.call(autopilot + ".plan", "--terrain", TERRAIN, code=0)
+        mixed = json.loads(without["flat.geojson"])
+        mixed["features"][0]["geometry"]["coordinates"][1].append(600)
+        (self.folder / "mixed.geojson").write_text(json.dumps(mixed))
+        _, err = self.call("mixed.geojson", "--terrain", TERRAIN, "--agl", "80", code=3)
+        self.assertIn("coordinates.1 has one, others none", err)
         two = json.loads(without["flat.geojson"])
         two["features"].append(two["features"][0])
         (self.folder / "two.geojson").write_text(json.dumps(two))
@@ -108,6 +113,7 @@ class CheckPlan(PlanCase):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
         for text, of in (("RTL_CLIMB_MIN,0\nTECS_CLMB_MAX,5\nNAVL1_PERIOD,17\n", "ArduPilot plane"),
                          ("WP_JERK,1\nWP_RADIUS,2\nATC_STR_RAT_P,0.2\n", "an ArduPilot rover"),
+                         ("CRUISE_SPEED,5\nTURN_RADIUS,1\nFRAME_CLASS,1\n", "an ArduPilot rover"),
                          ("WPNAV_SPEED,500\nJS_GAIN_DEFAULT,0.5\n", "an ArduPilot submarine")):
             (self.folder / "other.param").write_text(text)
             out, _ = self.check(high, "--params", "other.param", code=1)

@@ -72,6 +72,9 @@ class Stops(unittest.TestCase):
         landing, again = items[3]["params"], items[6]["params"]
         self.assertEqual(landing[4:6], again[4:6])
         self.assertAlmostEqual(again[6] - landing[6], 60, places=2)
+        for name in ("wpml", "litchi", "kml"):  # whose places would have one on the ground
+            err = self.call("export", "stops.plan", "--terrain", TERRAIN, "--to", name, "-o", "positions", code=3)[1]
+            self.assertIn("item 4 is a landing on the way", err)
         passed = self.check()
         self.assertIn("takes off again with MIS_OPTIONS 4 alone", passed)
         self.assertNotIn("is not flown", passed)

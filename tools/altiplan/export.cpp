@@ -85,6 +85,34 @@ std::string timed_text(const JudgedPlan& judged, const host::ExportOptions& opti
   return options.format->write(text);
 }
 
+/// A format of positions alone has no waits, drops and landings on the way: a landing would be a
+/// place on the ground to fly to.
+void expect_positions_alone(const std::string& file, const formats::MissionFile& mission,
+                            const host::RouteFormat& format) {
+  using formats::Task;
+  std::size_t left_out = 0;
+  std::optional<std::string> landed;
+  for (const formats::MissionCommand& command : mission.commands) {
+    const Task task = formats::command_task(command.number).task;
+    const bool takes_off = task == Task::take_off || task == Task::vtol_take_off;
+    if (takes_off && landed) {
+      throw Error(file + ": " + *landed + " is a landing on the way, and " +
+                  std::string(format.name) + " holds positions alone: not written");
+    }
+    if (task == Task::land || task == Task::vtol_land || task == Task::payload_place) {
+      landed = command.item > 0 ? "item " + std::to_string(command.item) : command.place;
+    }
+    constexpr int kGripper = 211;
+    const bool holds = task == Task::waypoint && command.params[0] > 0;
+    left_out +=
+        holds || task == Task::delay || task == Task::loiter_time || command.number == kGripper;
+  }
+  if (left_out > 0) {
+    warn(std::string(format.name) + " holds positions alone: " + std::to_string(left_out) +
+         " waits and drops are left out");
+  }
+}
+
 /// Its own commands, where the format has some; else its positions. None, which is reported: the
 /// mission does not pass.
 std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
@@ -108,6 +136,7 @@ std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
     }
     return plan ? std::optional(format.write_plan(*plan)) : std::nullopt;
   }
+  expect_positions_alone(file, judged.mission, format);
   if (format.needs_times) {
     return format.write == host::format_named("csv").write
                ? csv_of(judged)

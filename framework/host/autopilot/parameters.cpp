@@ -242,12 +242,15 @@ std::string Parameters::of_another() const {
   // PX4 has one set for all vehicles.
   constexpr std::array<std::array<std::size_t, 2>, 3> kColumns{{{0, 0}, {1, 1}, {2, 3}}};
   constexpr std::array kNames{"ArduPilot copter", "ArduPilot plane", "PX4"};
-  // Names of vehicles that fly no mission of ours.
-  constexpr std::array<std::array<const char*, 2>, 2> kOthers{
-      {{"ATC_STR_RAT_P", "an ArduPilot rover"}, {"JS_GAIN_DEFAULT", "an ArduPilot submarine"}}};
-  for (const auto& [name, vehicle] : kOthers) {
-    if (file_.contains(name)) {
-      return vehicle;
+  // Names of vehicles that fly no mission of ours, which begin so.
+  constexpr std::array<std::array<std::string_view, 2>, 3> kOthers{
+      {{"ATC_STR_", "an ArduPilot rover"},
+       {"CRUISE_SPEED", "an ArduPilot rover"},
+       {"JS_GAIN_", "an ArduPilot submarine"}}};
+  for (const auto& [begin, vehicle] : kOthers) {
+    const auto found = file_.lower_bound(std::string(begin));
+    if (found != file_.end() && found->first.starts_with(begin)) {
+      return std::string(vehicle);
     }
   }
   // Of names that one alone knows today another may have had some: most decide.

@@ -122,6 +122,10 @@ void put_above_ground(const std::string& file, formats::MissionFile& plan, doubl
                 (plan.route_problem.empty() ? "this one has its own" : plan.route_problem));
   }
   for (formats::MissionItem& item : plan.items) {
+    if (item.at.altitude_m != 0) {
+      throw Error(file + ": --agl is for a line without heights: " + item.place +
+                  " has one, others none");
+    }
     item.at.altitude_m = height_m;
     item.at.frame = formats::AltitudeFrame::ground;
   }

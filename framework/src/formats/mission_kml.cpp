@@ -211,9 +211,10 @@ class KmlReader {
                                 : mode == "clampToGround" ? "clampToGround, or no altitudeMode"
                                                           : "";
       }
+      const double altitude = mode == "clampToGround" ? 0 : c.altitude_m;  // which has none
       points.items.push_back(
           {MissionItem::Kind::waypoint,
-           wayline.value_or(MissionPoint{c.lonlat[0], c.lonlat[1], c.altitude_m, frame}), 0,
+           wayline.value_or(MissionPoint{c.lonlat[0], c.lonlat[1], altitude, frame}), 0,
            "point " + std::to_string(points.items.size() + 1)});
     }
   }
