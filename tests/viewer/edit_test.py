@@ -63,7 +63,7 @@ class Page(EditCase):
             self.browser.picture(os.path.join(PICTURES, f"edit_{self._testMethodName}.png"))
         self.assertEqual(self.browser.run("return altiplan.errors"), [])
 
-    def await_(self, holds, seconds=90):
+    def await_(self, holds, seconds=300):
         deadline = time.monotonic() + seconds
         while True:
             # Forms are built anew at each answer: an element may be gone when it is asked.
