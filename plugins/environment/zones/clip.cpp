@@ -2,7 +2,7 @@
 // Compiled with -O1: Boost's overlays take twice as long with -O3, and a zone is cut once.
 #include "clip.hpp"
 
-#define BOOST_ALLOW_DEPRECATED_HEADERS  // which Boost's own headers include
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // NOLINT: a name of Boost, whose own headers include some
 
 #include <algorithm>
 #include <boost/geometry/algorithms/convert.hpp>
