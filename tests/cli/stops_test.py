@@ -75,6 +75,9 @@ class Stops(unittest.TestCase):
         for name in ("wpml", "litchi", "kml"):  # whose places would have one on the ground
             err = self.call("export", "stops.plan", "--terrain", TERRAIN, "--to", name, "-o", "positions", code=3)[1]
             self.assertIn("item 4 is a landing on the way", err)
+        for options in (["stops.plan"], ["--route", "stops.plan"]):  # the stops are not looked for
+            told = "".join(self.call("check", *options, "--scenario", "scenario.yaml", code=1))
+            self.assertIn("the scenario's task is not judged", told)
         passed = self.check()
         self.assertIn("takes off again with MIS_OPTIONS 4 alone", passed)
         self.assertNotIn("is not flown", passed)

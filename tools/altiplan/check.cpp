@@ -138,7 +138,13 @@ int check_route(const CheckArguments& arguments) {
         "limits are "
         "checked");
   }
-  return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json);
+  const int code =
+      report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json);
+  if (mission.task) {
+    warn("whether the route does the scenario's task is not judged, which is no pass");
+    return kNoRoute;
+  }
+  return code;
 }
 
 /// What is written besides the verdict; returns the options.

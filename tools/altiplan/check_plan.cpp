@@ -436,18 +436,30 @@ void expect_files(const PlanCheck& plan) {
   }
 }
 
-/// Of zones beside the mission's line.
-Finding zones_finding(const std::vector<std::string>& names) {
-  constexpr std::size_t kNamed = 5;
+Finding not_judged(const char* rule, std::string message) {
   Finding finding;
-  finding.violation.constraint = "zones";
-  finding.violation.value = double(names.size());
-  finding.violation.message =
-      "whether the file's own polygons are closed is not said: " + host::listed(names, kNamed) +
-      ": if they are, give the file as --airspace too, else take them out";
+  finding.violation.constraint = rule;
+  finding.violation.message = std::move(message);
   finding.items = {"the mission"};
   finding.is_unjudged = true;
   return finding;
+}
+
+/// What of the file and of its scenario the world does not show.
+void add_not_judged(PlanReport& report, const PlanCheck& plan, const JudgedPlan& judged) {
+  constexpr std::size_t kNamed = 5;
+  if (const auto names = zones_not_judged(plan, judged.mission); !names.empty()) {
+    report.findings.push_back(not_judged(
+        "zones",
+        "whether the file's own polygons are closed is not said: " + host::listed(names, kNamed) +
+            ": if they are, give the file as --airspace too, else take them out"));
+  }
+  if (judged.world.task) {
+    report.findings.push_back(
+        not_judged("task",
+                   "whether it does the scenario's task is not judged: altiplan run judges "
+                   "its own routes by it"));
+  }
 }
 
 /// The world that the options describe in a part of the flight's time; none without zones with
@@ -498,9 +510,7 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);
   });
-  if (const auto names = zones_not_judged(plan, judged.mission); !names.empty()) {
-    judged.report.findings.push_back(zones_finding(names));
-  }
+  add_not_judged(judged.report, plan, judged);
   if (plan.returns) {
     judged.report.returns = busy("judging the returns", [&] {
       return host::judge_returns(judged.mission, judged.world, plan.gate);

@@ -102,10 +102,9 @@ void expect_positions_alone(const std::string& file, const formats::MissionFile&
     if (task == Task::land || task == Task::vtol_land || task == Task::payload_place) {
       landed = command.item > 0 ? "item " + std::to_string(command.item) : command.place;
     }
-    constexpr int kGripper = 211;
     const bool holds = task == Task::waypoint && command.params[0] > 0;
-    left_out +=
-        holds || task == Task::delay || task == Task::loiter_time || command.number == kGripper;
+    left_out += holds || task == Task::delay || task == Task::loiter_time ||
+                command.number == host::Command::kGripper;
   }
   if (left_out > 0) {
     warn(std::string(format.name) + " holds positions alone: " + std::to_string(left_out) +

@@ -118,8 +118,14 @@ bool Walker::takes_off_again(std::size_t n) {
     if (task == Task::delay) {
       const double seconds = commands_[next].params[0];
       waits_s += seconds > 0 ? seconds : kInfinity;  // until a time of day
-    } else if (task != Task::payload && task != Task::speed) {
-      break;
+    } else if (task == Task::jump || task == Task::jump_to_tag) {
+      if (flight_.is_given("MIS_OPTIONS") && (int(parameter("MIS_OPTIONS")) & kContinueAfterLand)) {
+        give_up(next, "whether it takes off again after a jump behind its landing is not judged");
+      }
+      return false;
+    } else if (task != Task::payload && task != Task::speed && task != Task::condition &&
+               task != Task::set_home && task != Task::fence && task != Task::jump_tag) {
+      break;  // the others move nothing
     }
   }
   if (next == commands_.size() ||
