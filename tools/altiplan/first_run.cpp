@@ -12,6 +12,7 @@
 #include "host/base/words.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
+#include "plan_world.hpp"
 #include "progress.hpp"
 
 namespace altiplan::cli {
@@ -234,16 +235,11 @@ std::unique_ptr<host::Unfinished> created(const fs::path& folder) {
 
 void print_zones(const host::RunResult& result, const std::vector<std::string>& layers) {
   for (const std::string& layer : layers) {
-    std::string text;
     for (const std::string& note : result.notes) {
-      const bool counts = note.find("keep-in zones, ") != note.npos ||
-                          note.find("zones outside the bounds") != note.npos ||
-                          note.find(", skipped: ") != note.npos;
-      if (counts && note.rfind(layer + ": ", 0) == 0) {
-        text += (text.empty() ? "" : "; ") + note.substr(layer.size() + 2);
+      if (note.starts_with(layer + ": ")) {
+        std::printf("zones: %s\n", note.c_str());
       }
     }
-    std::printf("zones: %s: %s\n", layer.c_str(), text.c_str());
   }
 }
 
@@ -251,10 +247,11 @@ host::PlanReport judged(const std::string& file, const host::FirstRoute& first,
                         const host::Overrides& overrides, const host::GateOptions& options) {
   host::Config config =
       host::load_scenario_text(first.flown_scenario(), "the world of go", overrides);
+  const formats::MissionFile mission = formats::read_mission(file);
   config.is_only_judged = true;
+  config.about = positions_of(mission);
   return busy("judging the mission", [&] {
-    return host::judge_plan(file, formats::read_mission(file), host::build_mission(config, 1),
-                            options);
+    return host::judge_plan(file, mission, host::build_mission(config, 1), options);
   });
 }
 

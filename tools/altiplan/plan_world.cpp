@@ -82,7 +82,8 @@ std::string point_text(const char* key, const formats::MissionItem& item) {
          host::exact_json_text(item.at.lat) + ", 0]}\n";
 }
 
-/// Where the mission may send the vehicle; 0, 0 stands for the place where it is.
+}  // namespace
+
 std::vector<LonLat> positions_of(const formats::MissionFile& mission) {
   std::vector<LonLat> positions;
   const auto add = [&](double lon, double lat) {
@@ -106,6 +107,8 @@ std::vector<LonLat> positions_of(const formats::MissionFile& mission) {
   }
   return positions;
 }
+
+namespace {
 
 /// Seconds for which zones with hours are looked at.
 double horizon_s(const PlanCheck& plan, const formats::MissionFile& mission) {
@@ -134,6 +137,18 @@ std::vector<host::Tile> models_about(const PlanCheck& plan, const formats::Missi
     }
   }
   const std::vector<LonLat> positions = positions_of(mission);
+  if (tiles.size() > 1 && !positions.empty()) {
+    constexpr double kReach = 30'000;  // metres that no flight leaves its positions
+    const Frame frame = Frame::local(positions.front());
+    Box reached = Box::empty();
+    for (const LonLat& at : positions) {
+      const auto [x, y] = frame.to_local(at[0], at[1]);
+      reached = reached.with({x, y, 0});
+    }
+    std::vector<host::Tile> near = tiles;
+    host::drop_distant(near, frame, reached.grown(kReach));
+    tiles = near.empty() ? tiles : std::move(near);
+  }
   const auto held = [&](const host::Tile& tile) {
     return std::count_if(positions.begin(), positions.end(),
                          [&](const LonLat& at) { return tile.holds(at[0], at[1]); });

@@ -12,6 +12,9 @@ namespace altiplan::cli {
 /// The files of --terrain, and all models in its folders.
 std::vector<std::string> models_of(const PlanCheck& plan);
 
+/// Where the mission may send the vehicle; 0, 0 stands for the place where it is.
+std::vector<LonLat> positions_of(const formats::MissionFile& mission);
+
 /// The scenario that the options of `altiplan check MISSION --terrain …` describe. Throws Error.
 host::Config world_of(const PlanCheck& plan, const formats::MissionFile& mission,
                       const host::Overrides& overrides);

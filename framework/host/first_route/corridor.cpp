@@ -70,21 +70,7 @@ void Corridor::drop_distant() {
   const auto [lon, lat] = flat.to_lonlat(centre.x(), centre.y());
   middle_ = {rounded(lon, 1e-3), std::clamp(rounded(lat, 1e-3), -90.0, 90.0)};
   reached = reached.grown(kMargins[kWidths - 1].of(length, turn_radius_m_));
-  const auto is_distant = [&](const Tile& tile) {
-    constexpr int kPoints = 8;
-    Box box = Box::empty();
-    for (int i = 0; i <= kPoints; ++i) {
-      for (int j = 0; j <= kPoints; ++j) {
-        const Vec3 size = tile.bounds.max - tile.bounds.min;
-        const auto place = tile.frame.to_lonlat(tile.bounds.min.x() + size.x() * i / kPoints,
-                                                tile.bounds.min.y() + size.y() * j / kPoints);
-        const auto [x, y] = flat.to_local(place[0], place[1]);
-        box = box.with({x, y, 0});
-      }
-    }
-    return box.is_bounded() && box.intersected(reached).is_empty();
-  };
-  tiles_.erase(std::remove_if(tiles_.begin(), tiles_.end(), is_distant), tiles_.end());
+  host::drop_distant(tiles_, flat, reached);
 }
 
 /// A geographic model is scaled for the latitude of the flight, and a projected one keeps its own
@@ -137,6 +123,8 @@ Box Corridor::in_frame(const Tile& tile) const {
     }
     return known->second;
   }
+  const Box degrees = tile.frame.degrees(tile.bounds);
+  const bool spans_half = degrees.max.x() - degrees.min.x() > 180;
   const auto at = [&](const Vec3& own) {
     const auto [lon, lat] = tile.frame.to_lonlat(own.x(), own.y());
     const auto [x, y] = frame_.to_local(lon, lat);
@@ -144,7 +132,8 @@ Box Corridor::in_frame(const Tile& tile) const {
   };
   const Vec3 low = at(tile.bounds.min);
   const Vec3 high = at(tile.bounds.max);
-  return {{low.x(), low.y(), -kInfinity}, {high.x(), high.y(), kInfinity}};
+  return {{spans_half ? -kInfinity : low.x(), low.y(), -kInfinity},
+          {spans_half ? kInfinity : high.x(), high.y(), kInfinity}};
 }
 
 std::vector<Tile> Corridor::tiles(const Box& box) const {

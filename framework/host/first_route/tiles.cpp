@@ -167,6 +167,23 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry) {
   return tiles;
 }
 
+void drop_distant(std::vector<Tile>& tiles, const Frame& frame, const Box& reached) {
+  std::erase_if(tiles, [&](const Tile& tile) {
+    constexpr int kPoints = 8;
+    Box box = Box::empty();
+    for (int i = 0; i <= kPoints; ++i) {
+      for (int j = 0; j <= kPoints; ++j) {
+        const Vec3 size = tile.bounds.max - tile.bounds.min;
+        const auto place = tile.frame.to_lonlat(tile.bounds.min.x() + size.x() * i / kPoints,
+                                                tile.bounds.min.y() + size.y() * j / kPoints);
+        const auto [x, y] = frame.to_local(place[0], place[1]);
+        box = box.with({x, y, 0});
+      }
+    }
+    return box.is_bounded() && box.intersected(reached).is_empty();
+  });
+}
+
 void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {
   const auto& [option, lon, lat, height] = point;
   const double usual = longitude_near(lon, 0);

@@ -39,6 +39,9 @@ Tile read_tile(const std::filesystem::path& file, const std::string& crs, Regist
 /// The wish's models, and all in its folders; messages begin with --terrain.
 std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry);
 
+/// Drops those that do not reach into the box of that frame.
+void drop_distant(std::vector<Tile>& tiles, const Frame& frame, const Box& reached);
+
 /// Throws Error for a point beyond all tiles, naming what they cover, and, where the point with its
 /// numbers swapped or their signs changed lies within, that one.
 void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point);

@@ -28,6 +28,8 @@ class ALTIPLAN_API Frame {
   /// Affine frame of a geographic elevation model: east = Δlon N(φ₀) cos φ₀, north = Δlat M(φ₀)
   /// with the WGS 84 radii of curvature at `middle_lat` (φ₀); (lon, lat) is the origin, degrees.
   static Frame geographic(double lon, double lat, double middle_lat);
+  /// The same, whose positions are within 180 degrees of `middle_lon` rather than of the origin.
+  static Frame geographic(double lon, double lat, double middle_lat, double middle_lon);
   /// Conformal, with lengths true about `middle`: the transverse Mercator projection whose central
   /// meridian and scale are that place's, poles and the 180th meridian included. A length is off by
   /// d² / (2 R²) at a distance d east or west of it: by 1e-6 at 9 km, 1e-4 at 90 km.

@@ -15,11 +15,11 @@ namespace {
 /// Posts of a geographic model stay a regular grid: lon and lat are scaled, not projected.
 class AffineProjection final : public Projection {
  public:
-  AffineProjection(double lon, double lat, double middle_lat)
-      : lon_(lon), lat_(lat), radii_(ground_radii(middle_lat)) {}
+  AffineProjection(double lon, double lat, double middle_lat, double middle_lon)
+      : lon_(lon), lat_(lat), middle_lon_(middle_lon), radii_(ground_radii(middle_lat)) {}
 
   std::array<double, 2> to_local(double lon, double lat) const override {
-    return {radians(longitude_near(lon, lon_) - lon_) * radii_.east,
+    return {radians(longitude_near(lon, middle_lon_) - lon_) * radii_.east,
             radians(lat - lat_) * radii_.north};
   }
 
@@ -30,6 +30,7 @@ class AffineProjection final : public Projection {
  private:
   double lon_;
   double lat_;
+  double middle_lon_;
   GroundRadii radii_;
 };
 
@@ -78,7 +79,12 @@ std::string place_text(const LonLat& p) {
 Projection::~Projection() = default;
 
 Frame Frame::geographic(double lon, double lat, double middle_lat) {
-  return projected(std::make_shared<AffineProjection>(lon, lat, middle_lat), "EPSG:4326, affine");
+  return geographic(lon, lat, middle_lat, lon);
+}
+
+Frame Frame::geographic(double lon, double lat, double middle_lat, double middle_lon) {
+  return projected(std::make_shared<AffineProjection>(lon, lat, middle_lat, middle_lon),
+                   "EPSG:4326, affine");
 }
 
 Frame Frame::local(const LonLat& middle, const LonLat& origin) {
@@ -140,12 +146,15 @@ double Frame::scale_error(const Box& box) const {
 Box Frame::degrees(const Box& area) const {
   constexpr int kPoints = 8;
   Box range = Box::empty();
-  for (int i = 0; i <= kPoints; ++i) {
-    for (int j = 0; j <= kPoints; ++j) {
-      const Vec3 size = area.max - area.min;
+  const Vec3 size = area.max - area.min;
+  for (int j = 0; j <= kPoints; ++j) {
+    double before = range.is_empty() ? kInfinity : range.min.x();
+    for (int i = 0; i <= kPoints; ++i) {
       const auto [lon, lat] =
           to_lonlat(area.min.x() + size.x() * i / kPoints, area.min.y() + size.y() * j / kPoints);
-      range = range.with({range.is_empty() ? lon : longitude_near(lon, range.min.x()), lat, 0});
+      // From one to the next: the area may span more than half of the Earth.
+      before = before < kInfinity ? longitude_near(lon, before) : lon;
+      range = range.with({before, lat, 0});
     }
   }
   for (const double pole : {-90.0, 90.0}) {

@@ -103,9 +103,14 @@ gdal::Dataset open(const Params& params, const std::vector<fs::path>& files) {
                        gdal::is_text_grid(files.front()) ? as_reals : nullptr, nullptr),
       std::move(close));
   if (!dataset) {
-    refuse(params,
-           "expected an elevation model (GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid, ENVI); " +
-               gdal::last_error());
+    refuse(
+        params,
+        "expected an elevation model (GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid, ENVI); " +
+            std::string(altiplan::formats::ending_of(params.file.text) == ".hgt"
+                            ? "SRTM tiles have 1201 x 1201 or 3601 x 3601 posts and are named by "
+                              "their south-west corner, as N46E008.hgt; "
+                            : "") +
+            gdal::last_error());
   }
   return dataset;
 }

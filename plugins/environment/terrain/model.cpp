@@ -43,24 +43,30 @@ std::array<int, 2> blocks_about(double low, double high, double origin, double s
   return {first, last - first + 1};
 }
 
-/// The posts around the volume; all if that saves little.
-Part part_about(const Dem& dem, const Layout& layout, const altiplan::Site& site) {
+/// The posts around the volume; all if that saves little. Of a model that is too large to be read
+/// whole those around a judged mission.
+Part part_about(const Params& params, const Dem& dem, const Layout& layout,
+                const altiplan::Site& site) {
   constexpr std::int64_t kFew = 4'000'000;  // read almost instantly
   const std::int64_t all = std::int64_t(dem.columns) * dem.rows;
+  const bool is_too_large = all > params.max_posts && !site.about.empty();
+  const Box volume = is_too_large
+                         ? reach_of(layout.frame, site.about, kReach)
+                         : site.volume.grown(margin(site.volume, site.vehicle.radius_m, layout));
   if (layout.resampled) {
     return layout.needed;
   }
-  if (all <= kFew || !is_bounded(site.volume) ||
+  if (all <= kFew || !is_bounded(volume) ||
       (site.before != nullptr &&
        may_join(layout.origin, layout.spacing, layout.columns, layout.rows, *site.before))) {
     return dem.whole();
   }
-  const Box about = site.volume.grown(margin(site.volume, site.vehicle.radius_m, layout));
-  const auto [column, columns] = blocks_about(about.min.x(), about.max.x(), layout.origin[0],
+  const auto [column, columns] = blocks_about(volume.min.x(), volume.max.x(), layout.origin[0],
                                               layout.spacing[0], layout.columns);
-  const auto [row, rows] =
-      blocks_about(about.min.y(), about.max.y(), layout.origin[1], layout.spacing[1], layout.rows);
-  return std::int64_t(columns) * rows <= all / 2 ? Part{column, row, columns, rows} : dem.whole();
+  const auto [row, rows] = blocks_about(volume.min.y(), volume.max.y(), layout.origin[1],
+                                        layout.spacing[1], layout.rows);
+  return std::int64_t(columns) * rows <= all / 2 || is_too_large ? Part{column, row, columns, rows}
+                                                                 : dem.whole();
 }
 
 using XY = std::array<double, 2>;
@@ -91,7 +97,7 @@ Model::Model(const Params& params, const altiplan::Site& site)
     : params_(params),
       dem_(read_dem(params, is_bounded(site.volume) || !site.about.empty())),
       layout_(layout_of(dem_, site, params)),
-      field_(read(part_about(dem_, layout_, site))),
+      field_(read(part_about(params_, dem_, layout_, site))),
       covered_(covered_by(field_, layout_)) {
   if (std::isinf(to_edge({0, 0, 0}))) {  // it is the whole
     dem_.numbers = {};

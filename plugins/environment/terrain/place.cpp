@@ -126,7 +126,9 @@ Layout in_own_frame(const Dem& dem, const std::optional<OwnScale>& scale = {}) {
     const double lon = dem.south_west[0] + shift[0];
     const double lat = dem.south_west[1] + shift[1];
     const double height_deg = (dem.rows - 1) * dem.step[1];
-    frame = Frame::geographic(lon, lat, scale ? scale->lat : lat + height_deg / 2);
+    const double width_deg = (dem.columns - 1) * dem.step[0];
+    frame =
+        Frame::geographic(lon, lat, scale ? scale->lat : lat + height_deg / 2, lon + width_deg / 2);
     // By the spacing of one post: a model may span more than half of the Earth.
     spacing = frame.to_local(lon + dem.step[0], lat + dem.step[1]);
   } else {
@@ -214,11 +216,8 @@ Footprint footprint(const Dem& dem, const View& view) {
   }
   return print;
 }
+}  // namespace
 
-/// How far from a mission the ground is of interest, metres.
-constexpr double kReach = 20'000;
-
-/// Horizontally, in the frame; all of it without positions.
 Box reach_of(const Frame& frame, const std::vector<altiplan::LonLat>& about, double metres) {
   if (about.empty()) {
     return {};
@@ -231,9 +230,10 @@ Box reach_of(const Frame& frame, const std::vector<altiplan::LonLat>& about, dou
   return box.grown(metres);
 }
 
+namespace {
 /// A rectangle along the frame's axes that the model covers, however its rows run: as far about the
-/// middle as it goes, then each side as far as it goes.
-Box rectangle_in(const View& view, const Vec3& middle, double reach) {
+/// mission, or else the middle, as it goes, then each side as far as it goes.
+Box rectangle_in(const View& view, const Box& mission, const Vec3& middle, double reach) {
   const auto is_covered = [&](const Box& box) {
     constexpr int kPoints = 32;
     for (int k = 0; k <= kPoints; ++k) {
@@ -254,7 +254,8 @@ Box rectangle_in(const View& view, const Vec3& middle, double reach) {
     return low;
   };
   const Box point{Vec3(middle.x(), middle.y(), 0), Vec3(middle.x(), middle.y(), 0)};
-  Box box = point.grown(longest(reach, [&](double by) { return point.grown(by); }));
+  const Box& seed = mission.is_bounded() && is_covered(mission) ? mission : point;
+  Box box = seed.grown(longest(reach, [&](double by) { return seed.grown(by); }));
   for (int axis = 0; axis < 2; ++axis) {
     for (Vec3 Box::*const side : {&Box::min, &Box::max}) {
       const auto grown = [&](double by) {
@@ -320,8 +321,8 @@ Layout in_frame(const Dem& dem, const Frame& frame, const Params& params,
       middle = {at[0], at[1], 0};
     }
     const XY corner = view.local(0, 0);
-    const Box box =
-        rectangle_in(view, middle, 2 * std::hypot(corner[0] - middle.x(), corner[1] - middle.y()));
+    const Box box = rectangle_in(view, reach_of(frame, about, 0), middle,
+                                 2 * std::hypot(corner[0] - middle.x(), corner[1] - middle.y()));
     print.low = {std::max(box.min.x(), reach.min.x()), std::max(box.min.y(), reach.min.y())};
     print.high = {std::min(box.max.x(), reach.max.x()), std::min(box.max.y(), reach.max.y())};
   }
@@ -437,11 +438,12 @@ Layout in_frame_about(const Dem& dem, const altiplan::Site& site, const Params& 
   constexpr double kFar = 1'000'000;  // a mission elsewhere, which is told so
   const Layout own = in_own_frame(dem);
   const auto [middle, metres] = judged(dem, site.about);
-  if (!(metres < kFar)) {
+  const Box all = area_of(dem, own, {});
+  const XY at = own.frame.to_local(middle[0], middle[1]);
+  if (!(metres < kFar) && !all.contains(Vec3(at[0], at[1], 0))) {
     return own;
   }
   const Box reach = reach_of(own.frame, site.about, kMargin);
-  const Box all = area_of(dem, own, {});
   if (!all.intersected(reach).is_empty()) {
     if (const auto scaled = in_scaled_frame(dem, own, reach, kMaxError)) {
       return *scaled;

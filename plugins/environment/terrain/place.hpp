@@ -19,6 +19,13 @@ struct Layout {
   Part needed;             ///< of the model's own posts, if these are resampled
 };
 
+/// How far from a mission the ground is of interest, metres.
+inline constexpr double kReach = 20'000;
+/// What is so near to one of the positions, horizontally, in the frame; all of it without
+/// positions.
+altiplan::Box reach_of(const altiplan::Frame& frame, const std::vector<altiplan::LonLat>& about,
+                       double metres);
+
 /// If the world has a frame, or the scenario requests one, the posts are transformed into it;
 /// otherwise the model's own becomes the world's, unless lengths in it are wrong by more than half
 /// a per cent. Then its axes are scaled to be true in the middle; and where that leaves them wrong

@@ -62,7 +62,8 @@ class Terrain final : public kit::FieldLayer<terrain::Model> {
                     : datum.empty() ? "heights without a datum, taken as above sea level"
                                     : "heights above the zero of '" + datum + "'");
     notes.push_back(own_extent(model().dem()));
-    notes.push_back(extent(layout.frame));
+    notes.push_back((layout.resampled ? "the rectangle of that frame which it covers: " : "") +
+                    extent(layout.frame));
     return notes;
   }
 

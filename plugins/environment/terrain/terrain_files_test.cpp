@@ -179,6 +179,8 @@ TEST_F(MadeFiles, DamagedAndForeignFilesAreRefused) {
   EXPECT_SAYS(refusal(write("vrt.tif", "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"/>")),
               "expected an elevation model");
   EXPECT_SAYS(refusal(write("N46E008.hgt", std::string(1000, 'x'))), "expected an elevation model");
+  EXPECT_SAYS(refusal(write("137.hgt", std::string(2 * 1201 * 1201, 'x'))),
+              "named by their south-west corner, as N46E008.hgt");
   EXPECT_SAYS(refusal(grid("10 10 10\n10 10")), "damaged");
   EXPECT_SAYS(refusal(write("huge.asc",
                             "ncols 100000\nnrows 100000\nxllcorner 0\nyllcorner 0\n"

@@ -239,6 +239,22 @@ TEST_F(PartOfAModel, MaxPostsCountsWhatIsRead) {
   }
 }
 
+TEST_F(PartOfAModel, OfOneThatIsTooLargeThePartAboutAMissionIsRead) {
+  const auto file = model("sound");
+  const Made whole = whole_of(file);
+  const World nothing;
+  Site site;
+  site.before = &nothing;
+  const auto [lon, lat] = whole->info().frame->to_lonlat(300, 400);
+  site.about = {{lon, lat}};
+  const std::string few = file_yaml(file, "max_posts: 5000000");  // of 5,460,000
+  const Made part = make_environment("terrain", few, site);
+  const auto [x, y] = part->info().frame->to_local(lon, lat);
+  EXPECT_NEAR(*part->ground()->height(x, y), *whole->ground()->height(300, 400), 0.5);
+  site.about.clear();
+  EXPECT_THROW(make_environment("terrain", few, site), Error);
+}
+
 TEST_F(PartOfAModel, TilesAndStripsOfATiffAreTheSame) {
   const auto raw = model("sound");
   const Made whole = whole_of(raw);
