@@ -294,8 +294,8 @@ class Go(unittest.TestCase):
         self.refused("--avoid: word.dat: expected zones: published airspace", "--terrain", TERRAIN,
                      *ENDS, "--avoid", "word.dat")
         self.zones("bow.geojson", [[-84.3, 36.5], [-84.2, 36.6], [-84.2, 36.5], [-84.3, 36.6],
-                                   [-84.3, 36.5]])
-        self.refused("--avoid: bow.geojson: features.0 ('0'): the outline meets itself", "--terrain",
+                                   [-84.3, 36.55]])
+        self.refused("--avoid: bow.geojson: features.0 ('0'): a ring must end where it starts", "--terrain",
                      TERRAIN, *ENDS, "--avoid", "bow.geojson")
         self.refused("no_planner", "--terrain", TERRAIN, *ENDS, "--planner", "no_planner")
 

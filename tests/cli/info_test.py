@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 PROGRAM, SOURCES = sys.argv[1:3]
 TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
@@ -95,6 +96,25 @@ class Info(unittest.TestCase):
         said = self.go("--from", "-88,-16", "--to", "271.5,-16")
         self.assertIn("--to: expected a longitude from -180 to 180, found 271.5: give -88.5", said)
 
+    def test_a_model_of_the_world(self):
+        rows = "\n".join(" ".join(str(100 + column // 9) for column in range(360)) for _ in range(180))
+        self.write("model.asc", f"ncols 360\nnrows 180\nxllcorner -180\nyllcorner -90\ncellsize 1\n{rows}\n")
+        said = self.info("model.asc")
+        for words in ("360 x 180 posts", "longitude -179.5 to 179.5, latitude -89.5 to 89.5",
+                      "not read whole, but about a flight: "):
+            self.assertIn(words, said)
+        for lon in (-170.3, -8.2, 8.2, 170.3):
+            line = json.dumps({"type": "Feature", "properties": {}, "geometry": {
+                "type": "LineString", "coordinates": [[lon, 46, 300], [lon + 0.01, 46, 300]]}})
+            run = subprocess.run([PROGRAM, "check", self.write("m.geojson", line), "--terrain", "model.asc", "--crs",
+                                  "EPSG:4326", "--json"],
+                                 cwd=self.folder, capture_output=True, text=True, timeout=600)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            above = json.loads(run.stdout)["metrics"]["min_ground_clearance_m"]
+            self.assertLess(abs(200 - (lon + 180) // 9 - above), 2)
+        said = self.go("--from", "8,89.9", "--to", "8.1,46", "--crs", "EPSG:4326")
+        self.assertIn("longitude 8, latitude 89.9 is outside the elevation model", said)
+
     def test_a_coordinate_system_is_asked_for_only_where_it_is_the_cause(self):
         said = self.info(self.model(500000, 5000000, 25), code=3)
         self.assertIn("the file names no coordinate system: give --crs EPSG:CODE", said)
@@ -138,6 +158,7 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
         out = self.info(self.write("zones.geojson", features(floor_m=100)))
         self.assertIn("zones.geojson: zones", out)
         self.assertIn("floor_property: floor_m", out)
+        self.assertIn("the property 'floor_m' is read as metres above sea level", out)
         self.assertIn("buildings", self.info(self.write("town.geojson", features(height=9))))
 
     def test_maps_and_missions(self):
@@ -150,6 +171,84 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
         for said in ("m.waypoints: mission", "1 item: 1 waypoints", "50 to 50 m above home",
                      'mission: "m.waypoints"'):
             self.assertIn(said, out)
+
+    def check(self, name, *options, code):
+        run = subprocess.run([PROGRAM, "check", name, "--terrain", TERRAIN, "--json", *options], cwd=self.folder,
+                             capture_output=True, text=True, timeout=600)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        return run.stderr if code == 3 else json.loads(run.stdout)
+
+    def test_why_there_is_no_route(self):
+        def kml(text):
+            return f"<kml xmlns:gx='g' xmlns:wpml='w'><Document>{text}</Document></kml>"
+
+        def gpx(text):
+            return f"<gpx>{text}</gpx>"
+
+        def czml(*positions):
+            packets = [{"id": str(n), "position": position} for n, position in enumerate(positions)]
+            return json.dumps([{"id": "document", "version": "1.0"}, *packets])
+
+        def point(name, lon):
+            return f'<{name} lat="36.6" lon="{lon}"><ele>1500</ele></{name}>'
+        track = "<Placemark><gx:Track><gx:coord>-84.3 36.6 1500</gx:coord></gx:Track></Placemark>"
+        line = ("<Placemark><LineString><altitudeMode>absolute</altitudeMode><coordinates>-84.3,36.6,1500 "
+                "-84.2,36.6,1500</coordinates></LineString></Placemark>")
+        spot = "<Placemark><Point><coordinates>-84.3,36.6</coordinates></Point></Placemark>"
+        flown = {"cartographicDegrees": [0, -84.3, 36.6, 1500, 9, -84.2, 36.6, 1500]}
+        places = [[-84.3, 36.6, 1500], [-84.2, 36.6, 1500]]
+        route = f'<rte>{point("rtept", -84.3)}{point("rtept", -84.29)}</rte>'
+        pieces = "".join(f'<trkseg>{point("trkpt", west)}{point("trkpt", west + 0.01)}</trkseg>' for west in (-84.3, -84.2))
+        for name, text, said in (
+                ("track.kml", kml(track), "a gx:Track records a flight"),
+                ("line_and_track.kml", kml(line + track), "a gx:Track records a flight"),
+                ("template.kml", kml("<wpml:templateType>waypoint</wpml:templateType>" + spot), "a template of DJI"),
+                ("lines.geojson", json.dumps({"type": "MultiLineString", "coordinates": [places, places[::-1]]}),
+                 "expected one LineString as the route, found more"),
+                ("two.czml", czml(flown, flown), "expected one packet with positions"),
+                ("curve.czml", czml({**flown, "interpolationAlgorithm": "LAGRANGE", "interpolationDegree": 5}),
+                 "found the interpolation LAGRANGE"),
+                ("both.gpx", gpx(route + f"<trk>{pieces}</trk>"), "expected one rte or trk as the route, found 2"),
+                ("pieces.gpx", gpx(f"<trk>{pieces}</trk>"), "expected a trk of one piece"),
+                ("places.gpx", gpx(point("wpt", -84.3) * 2), "found places (wpt) alone: 2")):
+            with self.subTest(name):
+                self.assertIn(said, self.check(self.write(name, text), code=3))
+                self.assertIn(said, self.info(name))
+        with zipfile.ZipFile(self.folder / "two.kmz", "w") as archive:
+            archive.writestr("a.kml", kml(line))
+            archive.writestr("b.kml", kml(line))
+        self.assertIn("expected one .kml in the archive, found more", self.check("two.kmz", code=3))
+        for options in ([], ["--agl", "50"]):
+            self.assertIn("a template of DJI", self.check("template.kml", *options, code=3))
+        one = self.check(self.write("one.gpx", gpx(f'<rte>{point("rtept", -84.3)}</rte>')), code=1)
+        self.assertEqual(one["verdict"], "not_judged")
+        self.assertEqual(self.check(self.write("bare.geojson", json.dumps(
+            {"type": "LineString", "coordinates": places})), code=0)["metrics"]["waypoints"], 2)
+
+    def test_a_text_in_parts_is_one(self):
+        for between in ("<!-- a -->", "<?b?>", "<![CDATA[ ]]>"):
+            with self.subTest(between):
+                line = f"<coordinates>-84.3,36.6,1500 -84.25{between.strip() if '?' in between else ''},36.6,1500 {between} -84.2,36.6,1500</coordinates>"
+                text = f"<kml><Placemark><LineString><altitudeMode>abs{between if '!--' in between else ''}olute</altitudeMode>{line}</LineString></Placemark></kml>"
+                checked = self.check(self.write("parts.kml", text), code=0)
+                self.assertEqual(checked["metrics"]["waypoints"], 3)
+        ring = "-84.26,36.55,0 -84.24,36.55,0 <!-- c --> -84.24,36.65,0 -84.26,36.65,0 -84.26,36.55,0"
+        self.write("zone.kml", "<kml><Placemark><Polygon><outerBoundaryIs><LinearRing><coordinates>" + ring +
+                   "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></kml>")
+        failed = self.check("parts.kml", "--airspace", "zone.kml", code=1)
+        self.assertEqual({each["layer"] for each in failed["violations"]}, {"zone.kml"})
+
+    def test_a_mission_from_south_to_north(self):
+        rows = "\n".join(" ".join(["100"] * 101) for _ in range(101))
+        self.write("north.asc", f"ncols 101\nnrows 101\nxllcorner 27\nyllcorner 53\ncellsize 0.01\n{rows}\n")
+        self.write("north.gpx", '<gpx><rte><rtept lat="53.05" lon="27.5"><ele>300</ele></rtept>'
+                   '<rtept lat="53.95" lon="27.5"><ele>300</ele></rtept></rte></gpx>')
+        run = subprocess.run([PROGRAM, "check", "north.gpx", "--terrain", "north.asc", "--terrain", TERRAIN, "--crs",
+                              "EPSG:4326", "--json"], cwd=self.folder, capture_output=True, text=True, timeout=600)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        notes = json.loads(run.stdout)["notes"]
+        self.assertTrue(any(note.startswith("terrain: ") for note in notes))
+        self.assertFalse(any(note.startswith("terrain 2: ") for note in notes), "a model of another region is read")
 
     def test_how_a_mission_is_flown(self):
         lines = ["0\t1\t0\t16\t0\t0\t0\t0\t46\t8\t400\t1", "1\t0\t3\t22\t0\t0\t0\t0\t46\t8\t50\t1",
@@ -165,6 +264,8 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
         out = self.info("none.tif", self.write("word.dat", "word"), TERRAIN, code=3)
         self.assertIn("altiplan: none.tif: there is no such file", out)
         self.assertIn("altiplan: word.dat: expected an elevation model", out)
+        self.assertIn("studies read it", self.info(self.write("a.map.scen", "version 1\n"), code=3))
+        self.assertIn("is a VRT", self.info(self.write("a.vrt", "<VRTDataset/>"), code=3))
         self.assertIn("403 x 344 posts", out)  # the others are read all the same
 
 

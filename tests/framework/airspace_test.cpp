@@ -155,6 +155,7 @@ TEST(Airspace, RefusesZonesWithoutAPlace) {
   EXPECT_NE(refusal(ed269("\"center\": [7, 46]", "\"center\": [46, 207]")), "");
   EXPECT_NE(refusal(ed269("\"Circle\"", "\"Square\"")), "");
   EXPECT_EQ(refusal(openair("DX 5")).substr(0, 30), "file:5: unknown record 'DX', e");
+  EXPECT_EQ(refusal(openair("AP! 5")), "") << "a record of another description of the format";
   EXPECT_EQ(refusal(openair("X 5")).substr(0, 29), "file:5: unknown record 'X', e");
   EXPECT_EQ(refusal(openair("DC 5")), "file:5: DC needs a centre, expected V X=… before it");
   EXPECT_NE(refusal(openair("DP 46:61:00 N 007:00:00 E")), "");

@@ -124,7 +124,10 @@ std::string zip_of(const std::vector<std::pair<std::string, std::string>>& entri
   return archive;
 }
 
-std::optional<std::string> zip_entry(std::string_view zip, std::string_view ending) {
+namespace {
+/// Looks at the names of the entries and where they are listed, until `look` returns false.
+template <class Look>
+void each_entry(std::string_view zip, const Look& look) {
   const std::size_t end = zip.rfind("PK\x05\x06");
   if (end == std::string_view::npos || zip.size() - end < kEndSize) {
     throw Error("the ZIP archive is damaged: its list of files is missing");
@@ -137,11 +140,31 @@ std::optional<std::string> zip_entry(std::string_view zip, std::string_view endi
     }
     const std::size_t name_size = number_at(zip, at + 28, 2);
     number_at(zip, at + kListedSize + name_size, 0);  // the name is there
-    if (zip.substr(at + kListedSize, name_size).ends_with(ending)) {
-      return content_of(zip, at);
+    if (!look(zip.substr(at + kListedSize, name_size), at)) {
+      return;
     }
     at += kListedSize + name_size + number_at(zip, at + 30, 2) + number_at(zip, at + 32, 2);
   }
-  return std::nullopt;
+}
+}  // namespace
+
+std::vector<std::string> zip_names(std::string_view zip) {
+  std::vector<std::string> names;
+  each_entry(zip, [&](std::string_view name, std::size_t) {
+    names.emplace_back(name);
+    return true;
+  });
+  return names;
+}
+
+std::optional<std::string> zip_entry(std::string_view zip, std::string_view ending) {
+  std::optional<std::string> content;
+  each_entry(zip, [&](std::string_view name, std::size_t at) {
+    if (name.ends_with(ending)) {
+      content = content_of(zip, at);
+    }
+    return !content;
+  });
+  return content;
 }
 }  // namespace altiplan::host

@@ -111,16 +111,24 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
   const Tile tile = read_tile(file, crs, registry);
   const std::string parameters =
       (tile.crs.empty() ? "" : ", crs: " + tile.crs) + ", voids: neighbours";
-  const auto layer = build("terrain", file, parameters, registry);
-  FileInfo info{
-      "elevation model",
-      layer->info().notes,
-      {"environment:", entry("terrain", file, parameters),
-       "# frame, if not given: " + layer->info().frame->crs() + ", origin at its south-west post"}};
+  FileInfo info{"elevation model", {}, {"environment:", entry("terrain", file, parameters)}};
+  try {
+    const auto layer = build("terrain", file, parameters, registry);
+    info.facts = layer->info().notes;
+    info.scenario.push_back("# frame, if not given: " + layer->info().frame->crs() +
+                            ", origin at its south-west post");
+    add_volume(*layer, tile.spacing_m, info);
+  } catch (const Error& error) {  // too large to be read whole; a part about a flight may be
+    const Box degrees = tile.frame.degrees(tile.bounds);
+    info.facts = {tile.note,
+                  "longitude " + with_digits(degrees.min.x(), 7) + " to " +
+                      with_digits(degrees.max.x(), 7) + ", latitude " +
+                      with_digits(degrees.min.y(), 7) + " to " + with_digits(degrees.max.y(), 7),
+                  std::string("not read whole, but about a flight: ") + error.what()};
+  }
   if (!tile.crs.empty()) {
     info.facts.push_back("names no coordinate system: read as " + tile.crs);
   }
-  add_volume(*layer, tile.spacing_m, info);
   return info;
 }
 
@@ -156,6 +164,9 @@ FileInfo zones_info(const fs::path& file, const std::optional<formats::Airspace>
 /// Footprints with heights are buildings.
 FileInfo features_info(const fs::path& file, Registry& registry) {
   const formats::GeoJson json = formats::read_geojson(file.string());
+  if (json.features.empty() && json.surroundings.empty() && !json.lines.empty()) {
+    return info_of(read_mission_file(file.string()), file.string());
+  }
   std::map<std::string, std::size_t> properties;
   for (const formats::GeoFeature& feature : json.features) {
     for (const auto& [name, value] : feature.properties) {
@@ -210,6 +221,13 @@ FileInfo info_of(const fs::path& file, const std::string& crs, Registry& registr
   std::string name = file.filename().string();
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char letter) { return char(std::tolower(letter)); });
+  if (ends_with(name, ".scen") || ends_with(name, ".3dscen")) {
+    throw Error(file.string() +
+                ": a set of scenarios (MovingAI, Warframe): studies read it (from)");
+  }
+  if (ends_with(name, ".vrt")) {
+    throw Error(file.string() + ": is a VRT, which may read any file: give the tiles themselves");
+  }
   const bool is_litchi_table =
       ends_with(name, ".csv") && holds_mission(file.string(), formats::read_file(file.string()));
   for (const LayerKind& kind : kLayers) {

@@ -140,8 +140,10 @@ FileInfo info_of(const formats::MissionFile& mission, const std::string& file) {
   }
   info.facts.push_back(counted(mission.items.size(), "item") +
                        (kinds.empty() ? "" : ": " + joined(kinds)));
-  const std::vector<std::string> heights = heights_of(mission);
-  info.facts.insert(info.facts.end(), heights.begin(), heights.end());
+  if (!mission.lacks_heights) {
+    const std::vector<std::string> heights = heights_of(mission);
+    info.facts.insert(info.facts.end(), heights.begin(), heights.end());
+  }
   if (mission.home) {
     info.facts.push_back("home at longitude " + with_digits(mission.home->lon, 9) + ", latitude " +
                          with_digits(mission.home->lat, 9) + ", " +
@@ -151,8 +153,11 @@ FileInfo info_of(const formats::MissionFile& mission, const std::string& file) {
   if (!extent.is_empty()) {
     info.facts.push_back(extent.text());
   }
-  if (!mission.items.empty() && !mission.route_problem.empty()) {
-    info.facts.push_back("its items are not a route: " + mission.route_problem);
+  if (!mission.route_problem.empty()) {
+    info.facts.push_back((mission.items.empty() ? "no route: " : "its items are not a route: ") +
+                         mission.route_problem);
+  } else if (mission.items.empty() && mission.zones.empty() && mission.rally.empty()) {
+    info.facts.emplace_back("no route: it holds no position to fly to");
   }
   info.facts.insert(info.facts.end(), mission.notes.begin(), mission.notes.end());
   if (mission.format == formats::MissionFile::Format::other) {

@@ -32,6 +32,17 @@ SurveyLines lines_of(const SurveyWish& wish) {
   return lines;
 }
 
+namespace {
+
+void add_area(SurveyWish& wish, const std::string& name, const formats::Polygon& polygon,
+              const std::string& problem) {
+  if (!problem.empty()) {
+    throw Error(wish.file.string() + ": '" + name + "': " + problem);
+  }
+  wish.areas.push_back({name, polygon});
+}
+}  // namespace
+
 void read_places(SurveyWish& wish) {
   const std::string name = wish.file.string();
   const std::string text = formats::read_file(name);
@@ -41,7 +52,7 @@ void read_places(SurveyWish& wish) {
   if (first != text.npos && text[first] == '{') {
     const formats::GeoJson json = formats::read_geojson(name);
     for (const formats::GeoFeature& feature : json.features) {
-      wish.areas.push_back({feature.id, feature.polygon});
+      add_area(wish, feature.id, feature.polygon, feature.problem);
     }
     lines = json.lines;
     flat = json.flat;
@@ -50,7 +61,7 @@ void read_places(SurveyWish& wish) {
     for (const formats::Zone& zone : map.zones) {
       if (const formats::Polygon& polygon = zone.volumes.front().polygon;
           !polygon.outline.empty()) {
-        wish.areas.push_back({zone.name, polygon});
+        add_area(wish, zone.name, polygon, zone.problem);
       }
     }
     if (wish.areas.empty() && map.route_problem.rfind("expected one", 0) == 0) {

@@ -67,6 +67,7 @@ std::string czml_text(const MissionText& text) {
 }
 
 formats::MissionFile read_czml(const std::string& file, const std::string& text) {
+  std::optional<formats::MissionFile> mission;
   try {
     for (const Json& packet : parse_json(text)) {
       if (!packet.is_object() || !packet.contains("position") ||
@@ -77,18 +78,31 @@ formats::MissionFile read_czml(const std::string& file, const std::string& text)
       if (!numbers.is_array() || numbers.size() % 4 != 0) {
         throw Error("expected positions of four numbers each in cartographicDegrees");
       }
-      formats::MissionFile mission;
-      mission.format = formats::MissionFile::Format::other;
-      for (std::size_t at = 0; at < numbers.size(); at += 4) {
-        mission.items.push_back(czml_item(numbers, at));
+      if (mission) {
+        mission->route_problem = "expected one packet with positions as the route, found more";
+        continue;
       }
-      return mission;
+      mission.emplace();
+      mission->format = formats::MissionFile::Format::other;
+      const Json& position = packet["position"];
+      if (position.value("interpolationAlgorithm", "LINEAR") != "LINEAR" &&
+          position.value("interpolationDegree", 1) != 1) {
+        mission->route_problem =
+            "expected positions joined by straight lines (LINEAR), found the interpolation " +
+            position["interpolationAlgorithm"].get<std::string>();
+      }
+      for (std::size_t at = 0; at < numbers.size(); at += 4) {
+        mission->items.push_back(czml_item(numbers, at));
+      }
     }
   } catch (const Json::exception& error) {
     throw Error(file + ": is not CZML: " + error.what());
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }
-  throw Error(file + ": no packet has a position with cartographicDegrees");
+  if (!mission) {
+    throw Error(file + ": no packet has a position with cartographicDegrees");
+  }
+  return std::move(*mission);
 }
 }  // namespace altiplan::host

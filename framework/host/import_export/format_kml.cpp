@@ -125,7 +125,15 @@ std::string kmz_text(const MissionText& text) {
 formats::MissionFile read_kmz(const std::string& file, const std::string& text) {
   std::optional<std::string> waylines;
   std::optional<std::string> kml;
+  std::string name;  // of the entry that is read
+  std::size_t others = 0;
   try {
+    for (const std::string& each : zip_names(text)) {
+      const bool is_one = each.ends_with(".kml") || each.ends_with("waylines.wpml");
+      const bool is_first = is_one && name.empty();
+      name = is_first ? each : name;
+      others += is_one && !is_first;
+    }
     waylines = zip_entry(text, "waylines.wpml");
     kml = zip_entry(text, ".kml");
   } catch (const Error& error) {
@@ -140,11 +148,25 @@ formats::MissionFile read_kmz(const std::string& file, const std::string& text) 
     return mission;
   };
   if (!waylines) {
-    return read(*kml, "/doc.kml");
+    formats::MissionFile mission = read(*kml, ("/" + name).c_str());
+    if (others > 0 && mission.route_problem.empty()) {
+      mission.route_problem = "expected one .kml in the archive, found more";
+      mission.lacks_heights = false;
+    }
+    return mission;
   }
   formats::MissionFile mission = read(*waylines, "/waylines.wpml");
   if (kml) {  // the template, where the place of take-off is
-    mission.home = read(*kml, "/template.kml").home;
+    try {
+      mission.home = read(*kml, "/template.kml").home;
+    } catch (const Error& error) {
+      if (std::any_of(mission.items.begin(), mission.items.end(), [](const auto& item) {
+            return item.at.frame == formats::AltitudeFrame::home;
+          })) {
+        throw;
+      }
+      mission.notes.push_back(std::string("its place of take-off is not read: ") + error.what());
+    }
   }
   return mission;
 }

@@ -114,6 +114,7 @@ class AixmReader {
       throw Error(file + ":" + std::to_string(line_at(text, std::size_t(parsed.offset))) +
                   ": is not valid XML: " + parsed.description());
     }
+    merge_texts(document_);
     check_depth();
     index();
   }

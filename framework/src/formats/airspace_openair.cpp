@@ -106,11 +106,13 @@ class OpenAirReader {
     }
   }
 
-  /// Of another description of the format, but not of the outline: two letters, without D first.
+  /// Of another description of the format, but not of the outline: two letters, without D first,
+  /// and perhaps a mark.
   static bool is_other(const std::string& record) {
     const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
-    return record.size() == 2 && letter(record[0]) && letter(record[1]) && record[0] != 'D' &&
-           record != "AF" && record != "AG" && record != "AT" && record != "AX";
+    const bool has_mark = record.size() == 3 && !letter(record[2]);
+    return (record.size() == 2 || has_mark) && letter(record[0]) && letter(record[1]) &&
+           record[0] != 'D' && record != "AF" && record != "AG" && record != "AT" && record != "AX";
   }
 
   Field* field_of(const std::string& record) {

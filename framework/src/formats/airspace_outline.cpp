@@ -320,6 +320,23 @@ std::vector<Polygon> cover_of(const Outline& given, const std::string& zone, Dou
   return loops;
 }
 
+Enclosed enclosed_by(const Polygon& rings) {
+  Enclosed result{{}, polygon_problem(rings)};
+  if (result.problem.empty()) {
+    result.polygons.push_back(rings);
+  } else if (polygon_problem({rings.outline, {}}).empty()) {
+    Doubts holes;
+    result.polygons.push_back({rings.outline, {}});
+    cut_holes(result.polygons.front(), rings.holes, "", holes);
+  } else {
+    add_loops(rings.outline, result.polygons);
+  }
+  if (result.polygons.empty() && !rings.holes.empty()) {
+    throw Error(result.problem);
+  }
+  return result;
+}
+
 Ring ring_within(const Outline& outline) { return fitted_ring(outline, true); }
 
 Ring circle_ring(const Point2& centre, double radius_m, bool within) {

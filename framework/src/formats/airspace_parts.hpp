@@ -52,6 +52,13 @@ void expect_bearing(double degrees);
 /// Polygons that cover the outline: one, several if it meets itself, none if it has no area; the
 /// last two are reported.
 std::vector<Polygon> cover_of(const Outline& outline, const std::string& zone, Doubts& doubts);
+/// The polygon, or where its rings are no polygon: what these may enclose, and what is wrong.
+/// None if they enclose nothing; throws Error if then there are holes all the same.
+struct Enclosed {
+  std::vector<Polygon> polygons;
+  std::string problem;
+};
+Enclosed enclosed_by(const Polygon& rings);
 /// True if the outline does not meet itself, apart from gaps between arcs and corners.
 bool is_simple(const Outline& outline);
 /// A circle around its disc, or within it.

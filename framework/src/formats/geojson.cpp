@@ -49,8 +49,8 @@ Ring read_ring(const Json& points) {
   return without_repeats(ring);
 }
 
-/// Nothing if the polygon is degenerate.
-std::optional<Polygon> read_polygon(const Json& rings) {
+/// No polygon if it is degenerate.
+Enclosed read_polygon(const Json& rings) {
   if (!rings.is_array()) {
     throw Error("a Polygon needs a list of rings, found " + short_text(rings));
   }
@@ -65,12 +65,9 @@ std::optional<Polygon> read_polygon(const Json& rings) {
   }
   polygon = unfolded(std::move(polygon));
   if (is_flat(polygon)) {
-    return std::nullopt;
+    return {};
   }
-  if (const std::string problem = polygon_problem(polygon); !problem.empty()) {
-    throw Error(problem);
-  }
-  return polygon;
+  return enclosed_by(polygon);
 }
 
 std::map<std::string, std::string> properties_of(const Json& feature) {
@@ -175,11 +172,11 @@ bool read_feature(const Json& feature, const std::string& id, GeoJson& to) {
   const std::size_t before = to.features.size();
   bool has_flat = false;
   const auto take = [&](const Json& rings) {
-    if (std::optional<Polygon> polygon = read_polygon(rings)) {
-      to.features.push_back({id, std::move(*polygon), properties_of(feature)});
-    } else {
-      has_flat = true;
+    Enclosed area = read_polygon(rings);
+    for (Polygon& polygon : area.polygons) {
+      to.features.push_back({id, std::move(polygon), properties_of(feature), area.problem});
     }
+    has_flat = has_flat || area.polygons.empty();
   };
   if (type == "Polygon") {
     take(coordinates);
@@ -227,6 +224,7 @@ Zone zone_of(const GeoFeature& feature) {
   Zone zone;
   zone.name = feature.id;
   zone.restriction = role_of(feature);
+  zone.problem = feature.problem;
   zone.volumes.push_back({feature.polygon, {}, {}});
   if (zone.restriction != Restriction::unspecified) {
     zone.volumes.front().lower = ZoneLimit::sea(feature.metres("floor_m"));
@@ -271,8 +269,13 @@ GeoJson read_geojson(const std::string& file) {
     list = document["features"].get_ref<const Json::array_t&>();
   } else if (type == "Feature") {
     list.push_back(document);
+  } else if (document.is_object() && document.contains("coordinates")) {
+    list.push_back({{"type", "Feature"}, {"geometry", document}});
+  } else if (type == "FeatureCollection") {
+    throw Error(file + ": the FeatureCollection has no list of features");
   } else {
-    throw Error(file + ": expected a GeoJSON FeatureCollection or Feature, found " + type);
+    throw Error(file + ": expected a GeoJSON FeatureCollection, Feature or geometry, found " +
+                type);
   }
   try {
     expect_wgs84(document);

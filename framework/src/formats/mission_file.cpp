@@ -91,9 +91,12 @@ std::optional<MissionCircle> circle_of(int command, const std::array<double, 4>&
 MissionFile read_json_mission(const std::string& file, const std::string& text) {
   const nlohmann::json json = parse_json(file, text);
   try {
-    return json.is_object() && json.value("type", nlohmann::json()) == "FeatureCollection"
-               ? read_geojson_route(json)
-               : read_qgc_plan(json);
+    const nlohmann::json type = json.is_object() ? json.value("type", nlohmann::json()) : json;
+    if (type == "LineString" || type == "MultiLineString") {
+      return read_geojson_route({{"type", "Feature"}, {"geometry", json}});
+    }
+    return type == "FeatureCollection" || type == "Feature" ? read_geojson_route(json)
+                                                            : read_qgc_plan(json);
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }
@@ -117,7 +120,7 @@ void expect_position(double lon, double lat) {
 void expect_altitude(double altitude_m) {
   if (!(std::abs(altitude_m) <= kMaxAltitude)) {
     throw Error("expected an altitude within 100 km of its reference, found " +
-                number_text(altitude_m) + " m");
+                (std::isnan(altitude_m) ? "none" : number_text(altitude_m) + " m"));
   }
 }
 

@@ -10,7 +10,7 @@ using Node = JsonNode;
 
 /// The line of a GeoJSON file that is a route: three coordinates per point, and `altitude_frame`
 /// among its properties (by default sea level, as in RFC 7946).
-void read_line(const Node& feature, MissionFile& mission) {
+void read_line(const Node& feature, const Node& points, MissionFile& mission) {
   if (!mission.items.empty()) {
     mission.route_problem = "expected one LineString as the route, found more";
     mission.lacks_heights = false;
@@ -39,7 +39,6 @@ void read_line(const Node& feature, MissionFile& mission) {
       expect_altitude(mission.home->altitude_m);
     });
   }
-  const Node points = feature.at("geometry").at("coordinates");
   for (std::size_t n = 0; n < points.size(); ++n) {
     const Node point = points.at(n);
     if (point.size() != 2 && point.size() != 3) {
@@ -67,15 +66,27 @@ MissionFile read_geojson_route(const nlohmann::json& json) {
   const JsonNode root(json, "");
   MissionFile mission;
   mission.format = MissionFile::Format::geojson;
-  const Node features = root.at("features");
   std::size_t others = 0;
-  for (std::size_t n = 0; n < features.size(); ++n) {
-    const Node feature = features.at(n);
+  const auto read = [&](const Node& feature) {
     const Node geometry = feature.at("geometry");
-    if (geometry.has("type") && geometry.at("type").text() == "LineString") {
-      read_line(feature, mission);
+    const std::string type = geometry.has("type") ? geometry.at("type").text() : "";
+    if (type == "LineString") {
+      read_line(feature, geometry.at("coordinates"), mission);
+    } else if (type == "MultiLineString") {
+      const Node lines = geometry.at("coordinates");
+      for (std::size_t n = 0; n < lines.size(); ++n) {
+        read_line(feature, lines.at(n), mission);
+      }
     } else {
       ++others;
+    }
+  };
+  if (root.at("type").text() == "Feature") {
+    read(root);
+  } else {
+    const Node features = root.at("features");
+    for (std::size_t n = 0; n < features.size(); ++n) {
+      read(features.at(n));
     }
   }
   if (others > 0) {

@@ -140,19 +140,30 @@ class KmlReader {
     } else if (name == "Point") {
       add_points(node, points_);
     } else if (name == "takeOffRefPoint") {
-      mission_.home = take_off_place(trimmed(node.text().get()));
+      const MissionPoint place = take_off_place(trimmed(node.text().get()));
+      if (place.lon != 0 || place.lat != 0) {  // else none is known
+        mission_.home = place;
+      }
     } else if (name == "waypointTurnMode") {
       expect_flown_as_drawn(node, "toPointAndStopWithDiscontinuityCurvature");
+    } else if (name == "templateType") {
+      is_template_ = true;
     } else if (name == "finishAction") {
       expect_flown_as_drawn(node, "noAction");
     } else {
       links_ += name == "NetworkLink";
+      tracks_ += name == "Track";  // of Google's extension
       return false;
     }
     return true;
   }
 
   void finish() {
+    if (is_template_ && mission_.route_problem.empty()) {
+      mission_.route_problem =
+          "a template of DJI, from which DJI Pilot makes what is flown: expected the KMZ, or the "
+          "waylines.wpml in it";
+    }
     if (lines_ > 1) {
       mission_.route_problem =
           "expected one LineString as the route, found " + std::to_string(lines_);
@@ -172,6 +183,15 @@ class KmlReader {
     if (flat_ > 0) {
       mission_.notes.push_back(std::to_string(flat_) +
                                " polygons without altitude limits: they apply at every altitude");
+    }
+    if (tracks_ > 0) {
+      mission_.route_problem =
+          "a gx:Track records a flight and is not read: expected a LineString as the route";
+      mission_.lacks_heights = false;
+    }
+    if (is_template_) {  // its polygons are areas to be surveyed
+      mission_.zones.clear();
+      mission_.lacks_heights = false;
     }
     if (links_ > 0) {
       mission_.notes.push_back(std::to_string(links_) + " network links not followed");
@@ -194,12 +214,28 @@ class KmlReader {
     }
   }
 
-  static void add_points(const pugi::xml_node& geometry, Points& points) {
+  /// True for the first point of a Folder of WPML.
+  static bool begins_wayline(const pugi::xml_node& geometry) {
+    pugi::xml_node before = geometry.parent().previous_sibling();
+    while (before && local_name(before) != "Placemark") {
+      before = before.previous_sibling();
+    }
+    return !before;
+  }
+
+  void add_points(const pugi::xml_node& geometry, Points& points) {
     const std::string_view mode = altitude_mode(geometry);
     const AltitudeFrame frame =
         mode == "relativeToGround" ? AltitudeFrame::ground : AltitudeFrame::sea;
     for (const Coordinate& c : coordinates_of(geometry)) {
       const std::optional<MissionPoint> wayline = wayline_point(geometry, c);
+      if (wayline && !points.items.empty() && begins_wayline(geometry) &&
+          (wayline->lon != points.items.back().at.lon ||
+           wayline->lat != points.items.back().at.lat)) {
+        mission_.route_problem =
+            "a wayline begins elsewhere than the one before it ends, and how "
+            "DJI flies there is not judged";
+      }
       if (wayline && !points.items.empty() && wayline->lon == points.items.back().at.lon &&
           wayline->lat == points.items.back().at.lat &&
           wayline->altitude_m == points.items.back().at.altitude_m) {
@@ -279,8 +315,7 @@ class KmlReader {
       throw Error("the Polygon has no outerBoundaryIs");
     }
     if (is_flat(unfolded(volume.polygon))) {
-      mission_.flat.push_back(zone.name.empty() ? "a Polygon without a name" : zone.name);
-      return;
+      return add_flat(zone);
     }
     volume.lower = ZoneLimit::sea(placemark.metres("floor_m"));
     volume.upper = ZoneLimit::sea(placemark.metres("ceiling_m"));
@@ -301,9 +336,31 @@ class KmlReader {
       volume.upper = ZoneLimit::sea(*high);
     }
     flat_ += volume.lower == ZoneLimit{} && volume.upper == ZoneLimit{};
-    check_volume(volume);
-    zone.volumes.push_back(std::move(volume));
-    mission_.zones.push_back(std::move(zone));
+    add_enclosed(zone, volume);
+  }
+
+  void add_flat(const Zone& zone) {
+    mission_.flat.push_back(zone.name.empty() ? "a Polygon without a name" : zone.name);
+  }
+
+  void add_enclosed(Zone& zone, ZoneVolume& volume) {
+    if (zone.keeps_in()) {
+      check_volume(volume);
+    }
+    Polygon rings{without_repeats(volume.polygon.outline), {}};
+    for (const Ring& hole : volume.polygon.holes) {
+      rings.holes.push_back(without_repeats(hole));
+    }
+    Enclosed area = enclosed_by(unfolded(std::move(rings)));
+    zone.problem = area.problem;
+    if (area.polygons.empty()) {
+      add_flat(zone);
+    }
+    for (Polygon& polygon : area.polygons) {
+      volume.polygon = std::move(polygon);
+      zone.volumes = {volume};
+      mission_.zones.push_back(zone);
+    }
   }
 
   MissionFile& mission_;
@@ -312,6 +369,8 @@ class KmlReader {
   std::size_t lines_ = 0;
   std::size_t flat_ = 0;
   std::size_t links_ = 0;
+  std::size_t tracks_ = 0;
+  bool is_template_ = false;
 };
 }  // namespace
 

@@ -15,6 +15,7 @@ MissionFile read_kml_or_gpx(const std::string& file, const std::string& text) {
   if (!parsed) {
     throw Error(at(parsed.offset) + "is not XML: " + parsed.description());
   }
+  merge_texts(document);
   for (const pugi::xml_node& node : document.children()) {
     if (node.type() == pugi::node_doctype) {
       throw Error(at(node.offset_debug()) + "a document type (<!DOCTYPE) is not accepted");

@@ -166,7 +166,7 @@ bool is_flat(const Polygon& polygon) {
 }
 
 std::string names_text(const std::vector<std::string>& names) {
-  constexpr std::size_t kMax = 8;
+  constexpr std::size_t kMax = 40;
   std::string text;
   for (std::size_t n = 0; n < std::min(names.size(), kMax); ++n) {
     text += (n == 0 ? "'" : ", '") + names[n] + "'";

@@ -39,6 +39,27 @@ inline std::string_view text_of(const pugi::xml_node& node, std::string_view nam
   return trimmed(child(node, name).text().get());
 }
 
+/// Makes one text of what comments, processing instructions and CDATA leave in parts.
+inline void merge_texts(pugi::xml_document& document) {
+  struct Merge : pugi::xml_tree_walker {
+    static bool is_text(const pugi::xml_node& node) {
+      return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
+    }
+    bool for_each(pugi::xml_node& node) override {
+      if (is_text(node) && is_text(node.next_sibling())) {
+        std::string text = node.value();
+        while (is_text(node.next_sibling())) {
+          text += node.next_sibling().value();
+          node.parent().remove_child(node.next_sibling());
+        }
+        node.set_value(text.c_str());
+      }
+      return true;
+    }
+  } merge;
+  document.traverse(merge);
+}
+
 inline double number_of(std::string_view text) {
   double value = 0;
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;

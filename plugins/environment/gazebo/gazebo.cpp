@@ -99,6 +99,9 @@ class WorldReader {
   template <std::size_t kCount>
   std::array<double, kCount> numbers(const Node& node) const {
     std::array<double, kCount> all{};
+    if (node.first_child() != node.last_child()) {
+      refuse(node, "expected a text of one piece, without comments");
+    }
     std::string_view text = node.text().get();
     const std::string found = excerpt(std::string(text));
     for (double& number : all) {

@@ -19,7 +19,10 @@ using formats::GeoJson;
 using formats::Zone;
 using Datum = formats::ZoneLimit::Datum;
 
-void expect_limits(const Zone& zone) {
+void expect_sound(const Zone& zone) {
+  if (zone.keeps_in() && !zone.problem.empty()) {
+    throw Error(zone.problem);
+  }
   const formats::ZoneLimit& lower = zone.volumes.front().lower;
   const formats::ZoneLimit& upper = zone.volumes.front().upper;
   if (lower.datum == Datum::sea && upper.datum == Datum::sea && !(lower.metres < upper.metres)) {
@@ -68,7 +71,7 @@ Zone zone_of(const GeoFeature& feature, const FileRules& rules, const TypeRule* 
   const TypeRule& type = rule != nullptr ? *rule : none;
   set_limit(feature.metres(rules.floor), type.floor_m, zone.volumes.front().lower);
   set_limit(feature.metres(rules.ceiling), type.ceiling_m, zone.volumes.front().upper);
-  expect_limits(zone);
+  expect_sound(zone);
   zone.periods = time_window(feature.text(rules.from), feature.text(rules.until));
   return zone;
 }
@@ -84,6 +87,20 @@ void expect_limits_read(const std::string& file, const GeoJson& json, const File
                     "', which is not read: expected " + key + ": " + name + " in the scenario");
       }
     }
+  }
+}
+
+/// "closed wherever its rings may enclose, as they are no polygon: 'spike'", if there are such.
+void add_problems(FileZones& file) {
+  std::vector<std::string> names;
+  for (const Zone& zone : file.zones) {
+    if (!zone.problem.empty() && (names.empty() || names.back() != zone.name)) {
+      names.push_back(zone.name);
+    }
+  }
+  if (!names.empty()) {
+    file.notes.push_back("rings that are no polygon, closed in all that they may enclose: " +
+                         formats::names_text(names));
   }
 }
 
@@ -126,6 +143,12 @@ FileZones read_features(const std::string& file, const FileRules& rules) {
                          (rules.type.empty() ? "" : " (" + counted(types) + ")") + ", " +
                          json.skipped_text() +
                          (skipped > 0 ? ", " + std::to_string(skipped) + " by their type" : ""));
+  for (const std::string& limit : {rules.floor, rules.ceiling}) {
+    if (!limit.empty()) {
+      result.notes.push_back("the property '" + limit + "' is read as metres above sea level");
+    }
+  }
+  add_problems(result);
   if (!surrounded.empty()) {
     result.notes.push_back("closed as far as a property says around " +
                            formats::names_text(surrounded));
@@ -156,7 +179,7 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
     if (zone.restriction == formats::Restriction::unspecified) {
       zone.restriction = rules.kind;
     }
-    expect_limits(zone);
+    expect_sound(zone);
   }
   result.notes.push_back(
       std::to_string(mission.zones.size()) + " zones read, " +
@@ -164,6 +187,7 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
       (mission.flat.empty() ? ""
                             : "; skipped, without an area: " + formats::names_text(mission.flat)));
   result.notes.insert(result.notes.end(), mission.notes.begin(), mission.notes.end());
+  add_problems(result);
   return result;
 }
 /// None for GeoJSON whose properties the scenario names, and for other kinds of files.

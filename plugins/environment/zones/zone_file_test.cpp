@@ -206,7 +206,6 @@ TEST_F(ZoneFile, OfAMultiPolygonThePartsWithAnAreaCount) {
 TEST_F(ZoneFile, WhatCannotBeReadOrContradictsItselfIsRefused) {
   const std::string whole = feature("whole", 25.0, "{}");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"[[[25, 60], [25.1, 60.1], [25.1, 60], [25, 60.1], [25, 60]]]", "meets itself"},
       {"[[[25, 60], [25.1, 60], [25.1, 60.1]]]", "must end where it starts"},
       {"[[[25, 60], [25.1, 60]]]", "must end where it starts"},
       {"[[[25, 60], [25, 160], [25, 60]]]", "expected longitude in"},
@@ -223,6 +222,37 @@ TEST_F(ZoneFile, WhatCannotBeReadOrContradictsItselfIsRefused) {
         refusal("f.geojson", collection({whole, polygon("pier", coordinates)}));
     EXPECT_NE(said.find("('pier'): "), std::string::npos) << said;
     EXPECT_NE(said.find(why), std::string::npos) << said;
+  }
+}
+
+TEST_F(ZoneFile, RingsThatAreNoPolygonCloseAllThatTheyMayEnclose) {
+  // A bow of two triangles; a square with a spike on its side; one whose hole reaches out of it.
+  const std::string bow = "[[[25, 60], [25.1, 60.1], [25.1, 60], [25, 60.1], [25, 60]]]";
+  const std::string spike =
+      "[[[26, 60], [26.1, 60], [26.1, 60.05], [26.12, 60.05], [26.1, 60.05], [26.1, 60.1], "
+      "[26, 60.1], [26, 60]]]";
+  const std::string hole =
+      "[[[27, 60], [27.1, 60], [27.1, 60.1], [27, 60.1], [27, 60]], "
+      "[[27.05, 60.04], [27.2, 60.04], [27.2, 60.06], [27.05, 60.06], [27.05, 60.04]]]";
+  const std::string all =
+      collection({polygon("bow", bow), polygon("spike", spike), polygon("hole", hole)});
+  const auto layer = zones("f.geojson", all);
+  for (const auto& [lon, lat] :
+       {std::pair(25.02, 60.05), {25.08, 60.05}, {26.05, 60.05}, {27.02, 60.05}, {27.07, 60.05}}) {
+    EXPECT_LT(layer->clearance(at(lon, lat, 10)), 0) << lon;
+  }
+  for (const auto& [lon, lat] : {std::pair(25.05, 60.02), {25.05, 60.08}, {26.11, 60.06}}) {
+    EXPECT_GT(layer->clearance(at(lon, lat, 10)), 0) << lon;
+  }
+  EXPECT_TRUE(says(*layer,
+                   "rings that are no polygon, closed in all that they may enclose: 'bow', "
+                   "'spike', 'hole'"));
+  // To be kept in by them would be a guess.
+  for (const std::string& rings : {bow, spike, hole}) {
+    EXPECT_NE(refusal("in.geojson", collection({polygon("in", rings)}), ", file_kind: keep_in")
+                  .find("'in': "),
+              std::string::npos)
+        << rings;
   }
 }
 

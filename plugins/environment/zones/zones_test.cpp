@@ -262,12 +262,15 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
   EXPECT_TRUE(
       says(refused("open", feature("[[[0, 0], [1, 0], [1, 1], [0, 1]]]")), "end where it starts"));
   EXPECT_TRUE(says(refused("range", feature("[[[0, 0], [190, 0], [1, 1], [0, 0]]]")), "190"));
-  const std::string bow = refused("bow", feature("[[[0, 0], [2, 2], [2, 0], [0, 2], [0, 0]]]"));
+  const auto kept_in = [](const std::string& name, const std::string& rings) {
+    return refusal("{file: " + written(name, feature(rings)) + ", file_kind: keep_in}");
+  };
+  const std::string bow = kept_in("bow", "[[[0, 0], [2, 2], [2, 0], [0, 2], [0, 0]]]");
   EXPECT_TRUE(says(bow, "meets itself at (1, 1)")) << bow;
   EXPECT_TRUE(says(bow, "Z1"));
-  EXPECT_TRUE(says(refused("hole", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]],"
-                                           " [[5, 5], [6, 5], [6, 6], [5, 5]]]")),
-                   "outside"));
+  EXPECT_TRUE(
+      says(kept_in("hole", "[[[0, 0], [2, 0], [2, 2], [0, 0]], [[5, 5], [6, 5], [6, 6], [5, 5]]]"),
+           "outside"));
   EXPECT_TRUE(says(
       refused("height", feature("[[[0, 0], [2, 0], [2, 2], [0, 0]]]", R"({"low": "surface"})")),
       "surface"));

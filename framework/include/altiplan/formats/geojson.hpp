@@ -15,6 +15,7 @@ struct ALTIPLAN_API GeoFeature {
   std::string id;  ///< the feature's id or name, else its number
   Polygon polygon;
   std::map<std::string, std::string> properties;  ///< as JSON; null values are omitted
+  std::string problem = {};                       ///< as that of a Zone
 
   /// The property as text; "" where the feature has none.
   std::string text(const std::string& property) const;
@@ -38,9 +39,8 @@ struct ALTIPLAN_API GeoJson {
 };
 
 /// Reads GeoJSON (RFC 7946). Throws Error, naming the feature, for damaged text, rings that are
-/// open or intersect themselves, coordinates out of range, and a radius or buffer that is no
-/// length. A number without a unit is in metres from 100 on, below in kilometres, which closes
-/// more.
+/// open, coordinates out of range, and a radius or buffer that is no length. A number without a
+/// unit is in metres from 100 on, below in kilometres, which closes more.
 ALTIPLAN_API GeoJson read_geojson(const std::string& file);
 
 /// The property `role` of zones that we wrote, keep_in or keep_out; unspecified for others.

@@ -68,6 +68,9 @@ struct ALTIPLAN_API Zone {
   Restriction restriction = Restriction::keep_out;
   std::vector<ZoneVolume> volumes;  ///< at least one; of a mission, exactly one
   std::vector<ZonePeriod> periods;  ///< none: always active
+  /// Why its rings are no polygon, such as an outline that meets itself; "" if they are. Its
+  /// volumes then hold whatever the rings may enclose, which is for keeping out of it alone.
+  std::string problem;
 
   bool keeps_in() const { return restriction == Restriction::keep_in; }
   /// "EGD901 (TEST DANGER)"
