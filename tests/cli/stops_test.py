@@ -66,18 +66,15 @@ class Stops(unittest.TestCase):
         self.assertIn("MIS_OPTIONS 4", messages)
         items = self.items()
         self.assertEqual([(each["command"], each["params"][0]) for each in items], [
-            (TAKE_OFF, 0), (WAYPOINT, 30), (WAYPOINT, 0), (LAND, 0), (GRIPPER, 1), (DELAY, 8), (TAKE_OFF, 0),
+            (TAKE_OFF, 0), (WAYPOINT, 30), (WAYPOINT, 0), (LAND, 0), (DELAY, 8), (GRIPPER, 1), (TAKE_OFF, 0),
             (WAYPOINT, 1), (GRIPPER, 1), (WAYPOINT, 0), (WAYPOINT, 0), (LAND, 0)])
-        self.assertEqual(items[4]["params"][1], 0)  # release
+        self.assertEqual(items[5]["params"][1], 0)  # release
         landing, again = items[3]["params"], items[6]["params"]
         self.assertEqual(landing[4:6], again[4:6])
         self.assertAlmostEqual(again[6] - landing[6], 60, places=2)
         for name in ("wpml", "litchi", "kml"):  # whose places would have one on the ground
             err = self.call("export", "stops.plan", "--terrain", TERRAIN, "--to", name, "-o", "positions", code=3)[1]
             self.assertIn("item 4 is a landing on the way", err)
-        for options in (["stops.plan"], ["--route", "stops.plan"]):  # the stops are not looked for
-            told = "".join(self.call("check", *options, "--scenario", "scenario.yaml", code=1))
-            self.assertIn("the scenario's task is not judged", told)
         passed = self.check()
         self.assertIn("takes off again with MIS_OPTIONS 4 alone", passed)
         self.assertNotIn("is not flown", passed)
@@ -85,11 +82,51 @@ class Stops(unittest.TestCase):
         lines = (self.folder / "stops.waypoints").read_text().splitlines()[2:]  # after home
         self.assertEqual([int(line.split("\t")[3]) for line in lines], [each["command"] for each in items])
 
+    def test_whether_a_mission_does_the_task(self):
+        self.run_in()
+        self.call("export", "result.json", "--takeoff", "--land", "-o", "stops.plan")
+        plan = json.loads((self.folder / "stops.plan").read_text())
+        items = plan["mission"]["items"]
+
+        def check(changed, code=1, *options):
+            plan["mission"]["items"] = changed
+            (self.folder / "changed.plan").write_text(json.dumps(plan))
+            return "".join(self.call("check", "changed.plan", "--scenario", "scenario.yaml", *options, code=code))
+
+        def without(*numbers):
+            return [item for n, item in enumerate(items) if n not in numbers]
+
+        # Commands: take-off, place, place, landing, delay, drop, take-off, place, drop, place, end, landing.
+        there, back = items[:2], items[10:]
+        backwards = there[:1] + items[9:10] + items[7:9] + items[2:7] + there[1:] + back
+        for sound in (items, backwards):
+            self.assertIn("pass: ", check(sound, 0))
+        for changed, said in ((without(9), "does not come to place 4 of the task's 4"),
+                              (without(4), "waits 0 s of 8 at place 2"), (without(5), "drops nothing at place 2"),
+                              (without(3, 4, 5, 6), "does not land at place 2"),
+                              (items[:4] + items[5:6] + items[4:5] + items[6:], "drops its cargo before it has waited"),
+                              (without(10, 11), "does not end where it begins")):
+            with self.subTest(said):
+                self.assertIn(said, check(changed))
+        jump = {**items[4], "command": 177, "params": [11, 1, 0, 0, 0, 0, 0]}  # over places 3 and 4
+        self.assertIn("does not come to place 3", check(items[:7] + [jump] + items[7:]))
+        (self.folder / "own.param").write_text("MIS_OPTIONS,0\n")  # the flight ends at the landing
+        self.assertIn("waits 0 s of 8 at place 2", check(items, 1, "--params", "own.param"))
+        # Positions alone neither wait nor land; the run's own result tells by its stops.
+        self.assertIn("waits 0 s of 30 at place 1", "".join(
+            self.call("check", "--route", "stops.plan", "--scenario", "scenario.yaml", code=1)))
+        self.call("check", "result.json")
+        result = json.loads((self.folder / "result.json").read_text())
+        at = next(n for n, leg in enumerate(result["legs"]) if leg.get("hold_s"))
+        del result["legs"][at], result["route"][at + 1]  # the first wait
+        (self.folder / "result.json").write_text(json.dumps(result))
+        self.assertIn("task: the route does not stop after pass 0 of the task", "".join(self.call("check", "result.json", code=1)))
+
     def test_the_fewest_items_keep_them(self):
         self.run_in()
         self.call("export", "result.json", "--autopilot", "ardupilot", "--takeoff", "--land", "-o", "stops.plan")
         self.assertEqual([each["command"] for each in self.items()],
-                         [TAKE_OFF, WAYPOINT, WAYPOINT, LAND, GRIPPER, DELAY, TAKE_OFF, WAYPOINT, GRIPPER, WAYPOINT,
+                         [TAKE_OFF, WAYPOINT, WAYPOINT, LAND, DELAY, GRIPPER, TAKE_OFF, WAYPOINT, GRIPPER, WAYPOINT,
                           WAYPOINT, LAND])
         self.check()
         refused = self.call("export", "result.json", "--autopilot", "px4", "--to", "qgc-plan", "--takeoff",

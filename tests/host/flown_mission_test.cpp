@@ -417,6 +417,18 @@ TEST(FlownMission, AHomeThatIsSetOnACircleIsNotJudged) {
       has_rule(fly({command(22, 0, 0, 50), command(16, 0, 500, 50), here}, kCopter), "not_judged"));
 }
 
+TEST(FlownMission, AHoldThatArduPilotCannotStoreIsNotJudged) {
+  for (const int number : {16, 19}) {
+    for (const double hold : {-1.0, 0.0, 65534.0, 65535.0, 65537.0}) {
+      const bool is_stored = hold >= 0 && hold < 65535;
+      MissionCommand holds = command(number, 500, 0, 20);
+      holds.params = {hold, 0, 0, 0};
+      EXPECT_NE(has_rule(fly({command(22, 0, 0, 20), holds}, kCopter), "not_judged"), is_stored)
+          << number << " " << hold;
+    }
+  }
+}
+
 /// Rounds, of which only the first few are flown one by one; a hovering vehicle's to the take-off.
 TEST(FlownMission, RoundsOfAJumpTakeAsLongEach) {
   for (const auto& [autopilot, target] :

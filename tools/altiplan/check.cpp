@@ -10,11 +10,13 @@
 #include "host/base/words.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
+#include "host/gate/task_verdict.hpp"
 #include "host/import_export/imported_route.hpp"
 #include "host/import_export/route_format.hpp"
 #include "host/judge/judge.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
+#include "host/run/along_task.hpp"
 #include "mission_options.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -66,9 +68,13 @@ void print_track(const host::TrackVerdict& verdict, const host::Track& track, bo
 /// Prints the verdicts on the route and, if there is one, on the flight; returns the exit code.
 int report(const host::Mission& mission, const Route& route,
            const std::optional<host::Track>& track, bool telemetry,
-           const std::vector<host::FlightEvent>& events, bool as_json) {
-  const CheckResult verdict =
+           const std::vector<host::FlightEvent>& events, bool as_json,
+           const std::optional<Violation>& undone) {
+  CheckResult verdict =
       busy("judging the route", [&] { return host::judge(route, mission.request, mission.via); });
+  if (undone) {
+    verdict.violations.push_back(*undone);
+  }
   const Measures measures = measure(route, mission.request);
   bool valid = verdict.ok();
   const host::Cost cost = host::price(route, mission.request, mission.via);
@@ -106,6 +112,23 @@ int report(const host::Mission& mission, const Route& route,
   return valid ? kDone : kNoRoute;
 }
 
+/// What of the scenario's task a route of altiplan run leaves undone.
+std::optional<Violation> undone_by_run(const host::Config& config, const host::Mission& mission,
+                                       const Route& route) {
+  if (!mission.task) {
+    return std::nullopt;
+  }
+  Budget budget;
+  if (const auto iterations = config.steps.front().within_iterations) {
+    budget.max_iterations = std::uint64_t(*iterations);
+  }
+  const TaskOrder order = host::order_of_task(mission, budget);
+  if (order.status != PlanStatus::solved) {
+    return Violation{"task", 0, 0, 0, "the task has no order: " + order.message};
+  }
+  return host::TaskSections(order, mission.ends, mission.request).violation(route, mission.request);
+}
+
 int check_result(const CheckArguments& arguments) {
   const host::StoredResult stored = host::read_result(*arguments.result, arguments.overrides);
   for (const std::string& changed : stored.changed) {
@@ -118,15 +141,16 @@ int check_result(const CheckArguments& arguments) {
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
   host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
-  host::take_open_ends(mission, *stored.route);
+  const std::optional<Violation> undone = undone_by_run(config, mission, *stored.route);
+  host::take_open_ends(mission, *stored.route, mission.request);
   return report(mission, *stored.route, stored.track, stored.telemetry,
-                host::build_events(config, mission), arguments.mission.plan.json);
+                host::build_events(config, mission), arguments.mission.plan.json, undone);
 }
 
 int check_route(const CheckArguments& arguments) {
   const host::Config config =
       host::load_scenario(*arguments.mission.plan.scenario, arguments.overrides);
-  const host::Mission mission =
+  host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
   const host::ImportedRoute imported = host::read_imported_route(*arguments.route, mission);
   for (const std::string& note : imported.notes) {
@@ -138,13 +162,15 @@ int check_route(const CheckArguments& arguments) {
         "limits are "
         "checked");
   }
-  const int code =
-      report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json);
+  std::optional<Violation> left;
   if (mission.task) {
-    warn("whether the route does the scenario's task is not judged, which is no pass");
-    return kNoRoute;
+    if (const auto finding = host::undone(mission, host::places_flown(imported.route))) {
+      left = finding->violation;
+    }
   }
-  return code;
+  host::take_open_ends(mission, imported.route, mission.request);
+  return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json,
+                left);
 }
 
 /// What is written besides the verdict; returns the options.

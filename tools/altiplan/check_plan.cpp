@@ -454,12 +454,6 @@ void add_not_judged(PlanReport& report, const PlanCheck& plan, const JudgedPlan&
         "whether the file's own polygons are closed is not said: " + host::listed(names, kNamed) +
             ": if they are, give the file as --airspace too, else take them out"));
   }
-  if (judged.world.task) {
-    report.findings.push_back(
-        not_judged("task",
-                   "whether it does the scenario's task is not judged: altiplan run judges "
-                   "its own routes by it"));
-  }
 }
 
 /// The world that the options describe in a part of the flight's time; none without zones with

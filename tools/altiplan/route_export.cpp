@@ -123,7 +123,7 @@ std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<
   if (mission.task && !mission.ends.goal) {
     mission.request.goal.tolerance_m = 1;  // files of missions round points
   }
-  host::take_open_ends(mission, source->route);
+  host::take_open_ends(mission, source->route, mission.request);
   if (route.flight) {
     source->events = host::build_events(config, mission);
   }

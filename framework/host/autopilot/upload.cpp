@@ -148,6 +148,19 @@ class UploadCheck {
         autopilot_.name() + " does not arm with this command unless RTL_AUTOLAND is set");
   }
 
+  /// ArduPilot stores seconds in 16 bits; what it makes of others depends on the board.
+  void check_hold(std::size_t n) {
+    constexpr double kMaxHold = 65535;  // stored for anything longer
+    const Task task = commands_.task_of(n).task;
+    const double hold = commands_[n].params[0];
+    const bool holds = task == Task::loiter_time ||
+                       ((task == Task::waypoint || task == Task::spline) && autopilot_.is_copter());
+    if (holds && !is_px4() && (hold < 0 || hold >= kMaxHold)) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "how long it holds is not judged: ArduPilot stores up to 65534 s");
+    }
+  }
+
   /// Reports what is wrong with a command; false if the mission is not flown because of it.
   bool check(std::size_t n) {
     const MissionCommand& command = commands_[n];
@@ -164,6 +177,7 @@ class UploadCheck {
     }
     check_landing_start(n);
     check_braking(n);
+    check_hold(n);
     switch (row.effect(autopilot_)) {
       case Effect::refused:
         return refuse("refused", "refuses the mission at upload because of command " +

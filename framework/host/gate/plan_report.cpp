@@ -11,8 +11,10 @@
 #include "altiplan/kit/layers/hours.hpp"
 #include "host/base/words.hpp"
 #include "host/gate/places.hpp"
+#include "host/gate/task_verdict.hpp"
 #include "host/gate/violated_zone.hpp"
 #include "host/judge/judge.hpp"
+#include "host/result/stored_result.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -65,6 +67,10 @@ FlownMission as_drawn(const formats::MissionFile& plan, const World& world, doub
       part.command = n;
       part.before = n > 0 ? n - 1 : 0;
       part.what = before ? "" : "the only position";
+      if (!before) {
+        drawn.remarks.push_back({Remark::Weight::not_judged, "not_judged", n,
+                                 "one position is no route: how it is flown to is not judged"});
+      }
       part.strips.push_back({from, here, from.z(), here.z(), 0});
       part.begin_s = drawn.time.min_s;
       const double seconds = (here - from).norm() / speed_mps;
@@ -89,6 +95,7 @@ class Gate {
  public:
   Gate(const formats::MissionFile& plan, const Mission& world, const GateOptions& options)
       : plan_(with_commands(plan)),
+        mission_(world),
         world_(world.truth),
         request_(world.request),
         options_(options),
@@ -111,6 +118,9 @@ class Gate {
       add_remarks(report, flown);
       report.parameters.insert(report.parameters.end(), flown.parameters.begin(),
                                flown.parameters.end());
+    }
+    if (mission_.task && !options_.own_ends) {
+      add_task(report, all);
     }
     report.line = flown_line(all.front());
     report.time = time_of(all);
@@ -270,6 +280,13 @@ class Gate {
     ways_.resize(report.findings.size());
   }
 
+  void add_task(PlanReport& report, const std::vector<FlownMission>& all) {
+    if (auto finding = undone(mission_, places_flown(plan_, world_, all))) {
+      report.findings.push_back(std::move(*finding));
+      ways_.resize(report.findings.size());
+    }
+  }
+
   void add_cures(PlanReport& report) {
     Cures search = cures();
     std::map<std::pair<std::size_t, std::size_t>, std::optional<Cure>> found;
@@ -324,6 +341,7 @@ class Gate {
   }
 
   formats::MissionFile plan_;
+  const Mission& mission_;
   const World& world_;
   Request request_;
   const GateOptions& options_;
@@ -336,11 +354,16 @@ class Gate {
 };
 
 /// The mission as it is drawn: without a landing, which is flown to at the height of the item
-/// before.
-formats::MissionFile without_landing(formats::MissionFile plan) {
+/// before; for a scenario's task without those on the way, either.
+formats::MissionFile without_landing(formats::MissionFile plan, bool on_the_way) {
   plan.route_problem.clear();  // the commands are judged
-  while (plan.items.size() > 1 && plan.items.back().kind == MissionItem::Kind::land) {
-    plan.items.pop_back();
+  auto& items = plan.items;
+  while (items.size() > 1 && items.back().kind == MissionItem::Kind::land) {
+    items.pop_back();
+  }
+  if (on_the_way) {
+    std::erase_if(items,
+                  [](const MissionItem& item) { return item.kind == MissionItem::Kind::land; });
   }
   return plan;
 }
@@ -481,7 +504,8 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   } catch (const Error& error) {
     throw Error(file + ": " + error.what());
   }
-  report.imported = route_in(without_landing(plan), world.truth, request, file);
+  report.imported =
+      route_in(without_landing(plan, world.task && !options.own_ends), world.truth, request, file);
   report.notes = report.imported.notes;
   try {
     Gate(plan, world, options).judge(report);
@@ -502,6 +526,7 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
     request.start.position = route.front();
     request.goal = {route.back()};
   } else {
+    take_open_ends(world, route, request);
     add_route_violations(report, world, request);
   }
   add_rally(report, plan, request);

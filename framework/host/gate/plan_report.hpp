@@ -158,7 +158,8 @@ struct GateOptions {
   WorldDuring world_during{};  ///< none: it is the same all the time
   std::optional<Battery> battery{};
   std::string battery_problem{};  ///< why that of a declared vehicle is not judged; "" if it is
-  bool own_ends = true;  ///< the route need not begin and end where the world's scenario says
+  /// The route need not begin and end where the world's scenario says, nor do its task.
+  bool own_ends = true;
 };
 
 /// From the fastest to the slowest of the flights.

@@ -100,6 +100,9 @@ void add_stop(const ItemStop& at, std::vector<PlanItem>& items) {
     items.push_back(place);
     items.back().command = Command::kLand;
     items.back().params[6] = at.ground_m;
+    if (hold_s > 0) {
+      items.push_back({Command::kDelay, kMissionFrame, {hold_s}});
+    }
   } else {
     items.back().params[0] = hold_s;
   }
@@ -107,9 +110,6 @@ void add_stop(const ItemStop& at, std::vector<PlanItem>& items) {
     constexpr double kFirst = 1;
     constexpr double kRelease = 0;
     items.push_back({Command::kGripper, kMissionFrame, {kFirst, kRelease}});
-  }
-  if (stop.lands && hold_s > 0) {
-    items.push_back({Command::kDelay, kMissionFrame, {hold_s}});
   }
   if (stop.lands) {
     items.push_back(place);

@@ -431,6 +431,13 @@ void add_task(const Config& config, Mission& mission, const Calling& calling) {
 }
 }  // namespace
 
+TaskOrder order_of_task(const Mission& mission, Budget budget) {
+  Request request = mission.request;
+  request.budget = std::move(budget);
+  request.random = mission.request.random.sub("task:order");
+  return mission.task->order(request, mission.ends);
+}
+
 Mission build_mission(const Config& config, int threads, const Calling& given,
                       const NoteSink& noted) {
   const auto ignore = [](const std::string&) {};

@@ -43,6 +43,9 @@ Mission build_mission(const Config& config, int threads,
                       const std::function<void(const std::string&)>& calling = {},
                       const NoteSink& on_note = {});
 
+/// The order of the mission's task, the same for the same seed and budget, whoever asks.
+TaskOrder order_of_task(const Mission& mission, Budget budget);
+
 /// Builds a layer in the same way as the scenario's own.
 Layer build_layer(const Config& config, const std::string& plugin_name, const Value& parameters,
                   const std::string& id, bool known, Site site, const std::string& key);

@@ -237,15 +237,15 @@ StoredResult stored_result(const std::string& file, Json content, const Override
   return stored;
 }
 
-void take_open_ends(Mission& mission, const Route& route) {
+void take_open_ends(const Mission& mission, const Route& route, Request& request) {
   if (!mission.task) {
     return;
   }
   if (!mission.ends.start) {
-    mission.request.start.position = route.front();
+    request.start.position = route.front();
   }
   if (!mission.ends.goal) {
-    mission.request.goal.position = route.back();
+    request.goal.position = route.back();
   }
 }
 }  // namespace altiplan::host

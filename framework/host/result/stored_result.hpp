@@ -46,7 +46,7 @@ Json read_json(const std::string& file, const std::string& expected);
 void expect_reachable(const Polyline& route, const std::string& file);
 
 /// Ends that a scenario with a task leaves open are those of its route.
-void take_open_ends(Mission& mission, const Route& route);
+void take_open_ends(const Mission& mission, const Route& route, Request& request);
 
 /// Reads the legs of a result or a step, or else its route, or a list of [x, y, z]; `file` is for
 /// messages. Throws Error, also for an empty route.

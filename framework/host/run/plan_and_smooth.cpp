@@ -99,7 +99,7 @@ PlanPart Run::part_of(const PlanPlugin& made) const {
 }
 
 std::optional<PlanResult> Run::order_task(const Request& request) {
-  TaskOrder order = mission_.task->order(request, mission_.ends);
+  TaskOrder order = order_of_task(mission_, request.budget);
   if (order.status != PlanStatus::solved) {
     PlanResult failed;
     failed.status = order.status;

@@ -181,7 +181,7 @@ class SceneBuilder {
     registry_ = config.registry;
     Mission mission = build_mission(config, 1);
     if (of.route) {
-      take_open_ends(mission, *of.route);
+      take_open_ends(mission, *of.route, mission.request);
     }
     say("drawing the world of " + of.file);
     if (scene_.is_null()) {
@@ -204,7 +204,7 @@ class SceneBuilder {
       by_json(results_[n], [&] {
         say("judging " + results_[n].file + number_of(n));
         if (results_[n].route) {
-          take_open_ends(mission, *results_[n].route);
+          take_open_ends(mission, *results_[n].route, mission.request);
         }
         results[n] = result_scene(results_[n], mission, events, {samples}, notes_);
         results[n]["trace"] = trace_scene(results_[n], notes_, [&](double share) {
