@@ -280,6 +280,9 @@ Vec3 BandJudge::place_of(const Worst& worst) const {
 }
 
 std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const {
+  if (is_valid(part)) {
+    return {};
+  }
   std::vector<Worst> worst;
   judge_sky(part, worst);
   std::vector<Line> invalid;

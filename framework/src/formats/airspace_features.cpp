@@ -42,6 +42,33 @@ std::optional<Format> format_of_feature(const Json& feature) {
   return std::nullopt;
 }
 
+/// True if the text may hold what format_of_feature looks for, or zones that are not GeoJSON: to
+/// find out is quicker than to parse it.
+bool may_be_airspace(const std::string& text) {
+  static constexpr const char* kMarks[] = {"\"uomDimensions\"",
+                                           "\"applicability\"",
+                                           "\"restriction\"",
+                                           "\"layer\"",
+                                           "\"extent\"",
+                                           "\"limitedApplicability\"",
+                                           "\"restrictionConditions\"",
+                                           "\"zoneAuthority\"",
+                                           "\"CEILING\"",
+                                           "\"APT1_",
+                                           "\"UASZoneList\"",
+                                           "\\u"};
+  const auto has = [&](const char* mark) { return text.find(mark) != std::string::npos; };
+  constexpr std::string_view kGeometry = "\"geometry\"";
+  for (std::size_t at = text.find(kGeometry); at != std::string::npos;
+       at = text.find(kGeometry, at + 1)) {
+    const std::size_t value = text.find_first_not_of(" \t\r\n:", at + kGeometry.size());
+    if (value != std::string::npos && text[value] == '[') {
+      return true;  // ED-269's list
+    }
+  }
+  return !has("\"FeatureCollection\"") || std::any_of(std::begin(kMarks), std::end(kMarks), has);
+}
+
 /// Reads features as they are parsed, once one of them has told the format.
 class FeatureReader {
  public:
@@ -96,6 +123,9 @@ class FeatureReader {
 }  // namespace
 
 std::optional<Airspace> read_airspace_json(const std::string& file, const std::string& text) {
+  if (!may_be_airspace(text)) {
+    return std::nullopt;
+  }
   FeatureReader reader;
   const auto take = [&](const std::string& key, Json& item) {
     try {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -258,15 +259,16 @@ void expect_properties(const std::string& file, const GeoJson& json,
   }
 }
 
-GeoJson read_geojson(const std::string& file) {
-  const Json document = parse_json(file, read_file(file));
+namespace {
+GeoJson parse_geojson(const std::string& file, const std::string& text) {
+  Json document = parse_json(file, text);
   const std::string type = document.is_object() && document.contains("type")
                                ? property_text(document["type"])
                                : short_text(document);
   Json::array_t list;
   if (type == "FeatureCollection" && document.contains("features") &&
       document["features"].is_array()) {
-    list = document["features"].get_ref<const Json::array_t&>();
+    list = std::move(document["features"].get_ref<Json::array_t&>());
   } else if (type == "Feature") {
     list.push_back(document);
   } else if (document.is_object() && document.contains("coordinates")) {
@@ -300,5 +302,28 @@ GeoJson read_geojson(const std::string& file) {
     result.copyright = document["copyright"].get<std::string>();
   }
   return result;
+}
+}  // namespace
+
+GeoJson read_geojson(const std::string& file) {
+  // Commands ask for a file's properties first, then a plugin for its zones.
+  struct Last {
+    std::string file;
+    std::string text;
+    GeoJson json;
+  };
+  static std::mutex mutex;
+  static std::optional<Last> last;
+  constexpr std::size_t kMaxKept = 16 << 20;
+  std::string text = read_file(file);
+  const std::lock_guard lock(mutex);
+  if (!last || last->file != file || last->text != text) {
+    GeoJson json = parse_geojson(file, text);
+    if (text.size() > kMaxKept) {
+      return json;
+    }
+    last = {file, std::move(text), std::move(json)};
+  }
+  return last->json;
 }
 }  // namespace altiplan::formats
