@@ -51,7 +51,7 @@ bool holds(const Airspace& airspace, const AirspaceIndex::Place& place, const ch
 }
 
 /// A zone of ED-269 with parts replaced.
-std::string ed269(std::string from = "", const std::string& to = "") {
+std::string ed269(const std::string& from = "", const std::string& to = "") {
   std::string text =
       R"({"features": [{"identifier": "Z1", "name": "Zone", "restriction": "PROHIBITED",
       "applicability": [{"permanent": "NO", "startDateTime": "2022-06-15T09:00:00.00Z",

@@ -64,10 +64,13 @@ std::vector<double> TaskSections::flights(const Request& request) const {
     from = at;
   };
   for (std::size_t i = 0; i < order_.passes.size(); ++i) {
-    if (order_.passes[i].takes_off && i > 0) {
-      land(order_.passes[i - 1].points.back());
+    Pass pass = order_.passes[i];
+    if (pass.takes_off && i > 0) {  // the way there ends the flight before
+      flight.last_join = std::move(pass.join);
+      pass.join.clear();
+      land(pass.points.front());
     }
-    flight.passes.push_back(order_.passes[i]);
+    flight.passes.push_back(std::move(pass));
   }
   flight.last_join = order_.last_join;
   land(points_.back());

@@ -242,12 +242,9 @@ Swept finish(const Problem& problem, Flown& flown) {
   return swept;
 }
 
-/// Rows in any order, however joined, and what covers so much takes at least this long.
+/// Rows in any order, however joined, take at least this long.
 double bound_of(const Problem& problem, const Flown& flown) {
   constexpr int kSteps = 100;
-  const double covered = (1 - problem.uncovered_share) * problem.area.square_metres();
-  const double strip = covered - kPi * problem.half() * problem.half();
-  const double by_area = std::max(0.0, strip) / (problem.spacing_m * problem.time.speed_mps);
   Ring2 ends;
   double rows = 0;
   for (std::size_t i = 0; i < flown.legs(); ++i) {
@@ -269,8 +266,7 @@ double bound_of(const Problem& problem, const Flown& flown) {
   if (!problem.closed || problem.goal) {
     longest = n == 0 ? 0 : *std::max_element(cost.begin(), cost.end());
   }
-  return std::max(by_area,
-                  rows + kit::tour_bound(n / 2, cost, flown.time_s - rows, kSteps) - longest);
+  return rows + kit::tour_bound(n / 2, cost, flown.time_s - rows, kSteps) - longest;
 }
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace altiplan::cover {
 struct Sweep {
   Flown flown;               ///< no points: none within the budget
   std::vector<char> needed;  ///< by leg: it covers what no other leg does
-  double bound_s = 0;        ///< of all tours that fly the same rows, or cover as much
+  double bound_s = 0;        ///< of all tours that fly the same rows
   std::uint64_t iterations = 0;
   bool is_complete = true;  ///< all attempts were made
 };
