@@ -214,6 +214,15 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
             with self.subTest(name):
                 self.assertIn(said, self.check(self.write(name, text), code=3))
                 self.assertIn(said, self.info(name))
+        for name, text, said in (
+                ("twice.kml", kml(line.replace("</altitudeMode>", "</altitudeMode><altitudeMode>clampToGround"
+                                               "</altitudeMode>")), "expected one element 'altitudeMode', found more"),
+                ("offset.kml", kml(line.replace("<LineString>", "<LineString><gx:altitudeOffset>-1400"
+                                                "</gx:altitudeOffset>")), "a gx:altitudeOffset is not read"),
+                ("ring.kml", kml(line + line.replace("LineString", "LinearRing")), "a LinearRing by itself"),
+                ("twice.gpx", gpx(route.replace("</ele>", "</ele><ele>9</ele>")), "expected one element 'ele'")):
+            with self.subTest(name):
+                self.assertIn(said, self.check(self.write(name, text), code=3))
         with zipfile.ZipFile(self.folder / "two.kmz", "w") as archive:
             archive.writestr("a.kml", kml(line))
             archive.writestr("b.kml", kml(line))
@@ -239,13 +248,19 @@ goal: {at_lonlat: [-84.2, 36.6], above_ground_m: 60}
         self.assertEqual({each["layer"] for each in failed["violations"]}, {"zone.kml"})
 
     def test_a_mission_from_south_to_north(self):
-        rows = "\n".join(" ".join(["100"] * 101) for _ in range(101))
-        self.write("north.asc", f"ncols 101\nnrows 101\nxllcorner 27\nyllcorner 53\ncellsize 0.01\n{rows}\n")
-        self.write("north.gpx", '<gpx><rte><rtept lat="53.05" lon="27.5"><ele>300</ele></rtept>'
-                   '<rtept lat="53.95" lon="27.5"><ele>300</ele></rtept></rte></gpx>')
+        def rows(summit):
+            return "\n".join(" ".join("400" if summit and (row, column) == (40, 50) else "100" for column in range(101))
+                             for row in range(101))
+        self.write("north.asc", f"ncols 101\nnrows 101\nxllcorner 27\nyllcorner 53\ncellsize 0.01\n{rows(False)}\n")
+        self.write("summit.asc", f"ncols 101\nnrows 101\nxllcorner 27\nyllcorner 53\ncellsize 0.01\n{rows(True)}\n")
+        self.write("north.gpx", '<gpx><rte><rtept lat="53.05" lon="27.505"><ele>300</ele></rtept>'
+                   '<rtept lat="53.95" lon="27.505"><ele>300</ele></rtept></rte></gpx>')
         run = subprocess.run([PROGRAM, "check", "north.gpx", "--terrain", "north.asc", "--terrain", TERRAIN, "--crs",
                               "EPSG:4326", "--json"], cwd=self.folder, capture_output=True, text=True, timeout=600)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        over = subprocess.run([PROGRAM, "check", "north.gpx", "--terrain", "summit.asc", "--crs", "EPSG:4326"],
+                              cwd=self.folder, capture_output=True, text=True, timeout=600)
+        self.assertEqual(over.returncode, 1, "the summit is cut")
         notes = json.loads(run.stdout)["notes"]
         self.assertTrue(any(note.startswith("terrain: ") for note in notes))
         self.assertFalse(any(note.startswith("terrain 2: ") for note in notes), "a model of another region is read")

@@ -109,7 +109,17 @@ class Stops(unittest.TestCase):
             with self.subTest(said):
                 self.assertIn(said, check(changed))
         jump = {**items[4], "command": 177, "params": [11, 1, 0, 0, 0, 0, 0]}  # over places 3 and 4
-        self.assertIn("does not come to place 3", check(items[:7] + [jump] + items[7:]))
+        self.assertIn("is not judged of jumps", check(items[:7] + [jump] + items[7:]))
+        # In the air it neither lands nor waits on the ground; a circle is not at its middle, nor a take-off at its.
+        for changed, said in ((items[:2] + [items[2]] + items[4:6] + [items[3]] + items[6:], "at place 2 of the task's 4"),
+                              (items[:4] + [items[6]] + items[4:6] + items[7:], "at place 2 of the task's 4"),
+                              (items[:9] + [{**items[9], "command": 18, "params": [1, 0, 60, 0, *items[9]["params"][4:]]}]
+                               + items[10:], "does not come to place 4"),
+                              (items[:9] + [{**items[9], "command": 22}] + items[10:], "does not come to place 4"),
+                              (items[:7] + [{**items[9], "command": 17, "params": [0, 0, 0, 0, *items[9]["params"][4:]]}] + items[7:], "does not come to place 3"),
+                              (items[:2] + [items[5]] + items[2:], "commands its gripper 3 times")):
+            with self.subTest([item["command"] for item in changed]):
+                self.assertIn(said, check(changed))
         (self.folder / "own.param").write_text("MIS_OPTIONS,0\n")  # the flight ends at the landing
         self.assertIn("waits 0 s of 8 at place 2", check(items, 1, "--params", "own.param"))
         # Positions alone neither wait nor land; the run's own result tells by its stops.
@@ -117,6 +127,10 @@ class Stops(unittest.TestCase):
             self.call("check", "--route", "stops.plan", "--scenario", "scenario.yaml", code=1)))
         self.call("check", "result.json")
         result = json.loads((self.folder / "result.json").read_text())
+        told = json.loads((self.folder / "result.json").read_text())
+        told["task"]["stops"][1]["drops"] = False
+        (self.folder / "told.json").write_text(json.dumps(told))
+        self.assertIn("its stops are not the task's", "".join(self.call("check", "told.json", code=1)))
         at = next(n for n, leg in enumerate(result["legs"]) if leg.get("hold_s"))
         del result["legs"][at], result["route"][at + 1]  # the first wait
         (self.folder / "result.json").write_text(json.dumps(result))

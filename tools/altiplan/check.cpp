@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -114,7 +115,7 @@ int report(const host::Mission& mission, const Route& route,
 
 /// What of the scenario's task a route of altiplan run leaves undone.
 std::optional<Violation> undone_by_run(const host::Config& config, const host::Mission& mission,
-                                       const Route& route) {
+                                       const host::StoredResult& stored) {
   if (!mission.task) {
     return std::nullopt;
   }
@@ -126,7 +127,26 @@ std::optional<Violation> undone_by_run(const host::Config& config, const host::M
   if (order.status != PlanStatus::solved) {
     return Violation{"task", 0, 0, 0, "the task has no order: " + order.message};
   }
-  return host::TaskSections(order, mission.ends, mission.request).violation(route, mission.request);
+  const host::TaskSections sections(order, mission.ends, mission.request);
+  if (auto undone = sections.violation(stored.route.value(), mission.request)) {
+    return undone;
+  }
+  std::vector<const Pass*> acting;
+  for (const Pass& pass : order.passes) {
+    if (pass.stop.acts()) {
+      acting.push_back(&pass);
+    }
+  }
+  const bool are_same = std::equal(
+      acting.begin(), acting.end(), stored.stops.begin(), stored.stops.end(),
+      [](const Pass* pass, const host::PlacedStop& stop) {
+        constexpr double kRounding = 1e-6;
+        return std::abs(pass->stop.hold_s - stop.stop.hold_s) < kRounding &&
+               pass->stop.lands == stop.stop.lands && pass->stop.drops == stop.stop.drops &&
+               (pass->points.back() - stop.at).norm() <= kLengthTolerance;
+      });
+  return are_same ? std::nullopt
+                  : std::optional(Violation{"task", 0, 0, 0, "its stops are not the task's"});
 }
 
 int check_result(const CheckArguments& arguments) {
@@ -141,7 +161,7 @@ int check_result(const CheckArguments& arguments) {
   const host::Config config = host::load_config(stored.pipeline, stored.overrides);
   host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
-  const std::optional<Violation> undone = undone_by_run(config, mission, *stored.route);
+  const std::optional<Violation> undone = undone_by_run(config, mission, stored);
   host::take_open_ends(mission, *stored.route, mission.request);
   return report(mission, *stored.route, stored.track, stored.telemetry,
                 host::build_events(config, mission), arguments.mission.plan.json, undone);

@@ -281,7 +281,7 @@ class Gate {
   }
 
   void add_task(PlanReport& report, const std::vector<FlownMission>& all) {
-    if (auto finding = undone(mission_, places_flown(plan_, world_, all))) {
+    if (auto finding = undone(mission_, plan_, all)) {
       report.findings.push_back(std::move(*finding));
       ways_.resize(report.findings.size());
     }

@@ -17,10 +17,6 @@ struct PlaceFlown {
   bool is_on_curve = false;               ///< the way there is not straight
 };
 
-/// The places that all flights of the mission come to, in order. A landing is at the height from
-/// which it goes down.
-std::vector<PlaceFlown> places_flown(const formats::MissionFile& plan, const World& world,
-                                     const std::vector<FlownMission>& flights);
 /// The waypoints of a route; it neither lands nor drops anything.
 std::vector<PlaceFlown> places_flown(const Route& route);
 
@@ -28,4 +24,8 @@ std::vector<PlaceFlown> places_flown(const Route& route);
 /// flies the task's passes, and either way; none if all is. A pass that is not flown is not judged:
 /// other lines may show the same ground. A place is missed that no waypoint is within a metre of.
 std::optional<Finding> undone(const Mission& world, const std::vector<PlaceFlown>& places);
+/// The same of a mission that may be flown so: of what all flights do. A landing is at the height
+/// from which it goes down. Not judged with jumps, conditions, new homes, and of aeroplanes.
+std::optional<Finding> undone(const Mission& world, const formats::MissionFile& plan,
+                              const std::vector<FlownMission>& flights);
 }  // namespace altiplan::host

@@ -353,15 +353,37 @@ Ring circle_ring(const Point2& centre, double radius_m, bool within) {
 
 void cut_holes(Polygon& polygon, const std::vector<Ring>& holes, const std::string& zone,
                Doubts& doubts) {
-  for (const Ring& hole : holes) {
-    Polygon with = polygon;
-    with.holes.push_back(without_repeats(hole));
-    with = unfolded(std::move(with));
-    if (polygon_problem(with).empty()) {
-      polygon = std::move(with);
-    } else {
-      doubts.add("hole that is no part of the zone, closed", zone);
+  const auto with = [&](std::vector<Ring> cut) {
+    for (Ring& hole : cut) {
+      hole = without_repeats(hole);
     }
+    return unfolded(Polygon{polygon.outline, std::move(cut)});
+  };
+  const auto fit = [&](const std::vector<Ring>& cut) { return polygon_problem(with(cut)).empty(); };
+  const auto tell = [&] { doubts.add("hole that is no part of the zone, closed", zone); };
+  std::vector<Ring> sound;
+  std::copy_if(holes.begin(), holes.end(), std::back_inserter(sound),
+               [&](const Ring& hole) { return fit({hole}); });
+  if (sound.size() < holes.size()) {
+    tell();
+  }
+  if (!fit(sound)) {  // what two holes share may be closed: neither is cut
+    constexpr std::size_t kMaxCompared = 100;
+    std::vector<Ring> alone;
+    for (std::size_t n = 0; n < sound.size() && sound.size() <= kMaxCompared; ++n) {
+      bool is_alone = true;
+      for (std::size_t m = 0; m < sound.size() && is_alone; ++m) {
+        is_alone = m == n || fit({sound[n], sound[m]});
+      }
+      if (is_alone) {
+        alone.push_back(sound[n]);
+      }
+    }
+    sound = std::move(alone);
+    tell();
+  }
+  if (!sound.empty()) {
+    polygon = with(std::move(sound));
   }
 }
 }  // namespace altiplan::formats

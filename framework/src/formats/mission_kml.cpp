@@ -39,7 +39,7 @@ Coordinate coordinate_of(std::string_view tuple) {
 }
 
 std::vector<Coordinate> coordinates_of(const pugi::xml_node& geometry) {
-  const pugi::xml_node node = child(geometry, "coordinates");
+  const pugi::xml_node node = only_child(geometry, "coordinates");
   if (!node) {
     throw Error("the element 'coordinates' is missing");
   }
@@ -73,7 +73,9 @@ std::optional<MissionPoint> wayline_point(const pugi::xml_node& geometry, const 
   if (height.empty()) {
     return std::nullopt;
   }
-  const std::string_view mode = text_of(placemark.parent(), "executeHeightMode");
+  // The first of its Folder, which may hold thousands of others to look through.
+  const std::string_view mode =
+      trimmed(child(placemark.parent(), "executeHeightMode").text().get());
   const auto [lon, lat] = at.lonlat;
   MissionPoint point{lon, lat, number_of(height), AltitudeFrame::home};
   if (mode == "WGS84") {
@@ -139,6 +141,10 @@ class KmlReader {
       add_points(node, line_);
     } else if (name == "Point") {
       add_points(node, points_);
+    } else if (name == "LinearRing") {  // not of a Polygon: those are taken with it
+      mission_.route_problem =
+          "a LinearRing by itself is neither a route nor a zone: expected a "
+          "LineString or a Polygon";
     } else if (name == "takeOffRefPoint") {
       const MissionPoint place = take_off_place(trimmed(node.text().get()));
       if (place.lon != 0 || place.lat != 0) {  // else none is known
@@ -224,6 +230,10 @@ class KmlReader {
   }
 
   void add_points(const pugi::xml_node& geometry, Points& points) {
+    if (const std::string_view offset = text_of(geometry, "altitudeOffset");
+        !offset.empty() && number_of(offset) != 0) {
+      throw Error("a gx:altitudeOffset is not read: expected heights without one");
+    }
     const std::string_view mode = altitude_mode(geometry);
     const AltitudeFrame frame =
         mode == "relativeToGround" ? AltitudeFrame::ground : AltitudeFrame::sea;
@@ -280,7 +290,7 @@ class KmlReader {
   }
 
   static Ring ring_of(const pugi::xml_node& boundary, std::vector<double>& heights) {
-    const std::vector<Coordinate> corners = coordinates_of(child(boundary, "LinearRing"));
+    const std::vector<Coordinate> corners = coordinates_of(only_child(boundary, "LinearRing"));
     if (!corners.empty() && corners.front().lonlat != corners.back().lonlat) {
       throw Error("a ring must end where it starts");
     }

@@ -27,6 +27,17 @@ inline pugi::xml_node child(const pugi::xml_node& node, std::string_view name) {
   return node.find_child([&](const pugi::xml_node& c) { return local_name(c) == name; });
 }
 
+/// The same of one that there may be once. Throws Error if there are more.
+inline pugi::xml_node only_child(const pugi::xml_node& node, std::string_view name) {
+  const pugi::xml_node found = child(node, name);
+  for (pugi::xml_node other = found.next_sibling(); other; other = other.next_sibling()) {
+    if (local_name(other) == name) {
+      throw Error("expected one element '" + std::string(name) + "', found more");
+    }
+  }
+  return found;
+}
+
 inline std::string_view trimmed(std::string_view text) {
   constexpr const char* kSpace = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kSpace);
@@ -36,7 +47,7 @@ inline std::string_view trimmed(std::string_view text) {
 }
 
 inline std::string_view text_of(const pugi::xml_node& node, std::string_view name) {
-  return trimmed(child(node, name).text().get());
+  return trimmed(only_child(node, name).text().get());
 }
 
 /// Makes one text of what comments, processing instructions and CDATA leave in parts.

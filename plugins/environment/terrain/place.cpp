@@ -544,6 +544,60 @@ void bring_to_sea_level(const Dem& dem, Posts& posts) {
 
 /// Exact positions are computed every `net` posts and interpolated between: over so few posts a
 /// projection deviates by less than 0.001 of their spacing, and it costs a microsecond per point.
+namespace {
+XY between(const XY& a, const XY& b, double share) {
+  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+}
+
+/// Raises the posts about each of the model's own below which their ground would lie: summits stay.
+void raise_to(const View& view, const Layout& layout, const Posts& own, int net,
+              std::vector<float>& heights) {
+  const Part& part = own.part;
+  const int knots = (part.columns - 1) / net + 2;
+  const auto knot_row = [&](int j) {
+    std::vector<XY> row;
+    for (int k = 0; k < knots; ++k) {
+      const XY at = view.local(part.column + k * net, part.row + j);
+      row.push_back({(at[0] - layout.origin[0]) / layout.spacing[0],
+                     (at[1] - layout.origin[1]) / layout.spacing[1]});
+    }
+    return row;
+  };
+  std::vector<XY> south;
+  std::vector<XY> north = knot_row(0);
+  for (int j = 0; j < part.rows; ++j) {
+    if (j % net == 0) {
+      south = std::move(north);
+      north = knot_row(j + net);
+    }
+    for (int i = 0; i < part.columns; ++i) {
+      const std::size_t k = std::size_t(i / net);
+      const double share = double(i % net) / net;
+      const XY at = between(between(south[k], south[k + 1], share),
+                            between(north[k], north[k + 1], share), double(j % net) / net);
+      if (!(at[0] >= 0 && at[1] >= 0 && at[0] < layout.columns - 1 && at[1] < layout.rows - 1)) {
+        continue;
+      }
+      const auto column = std::size_t(at[0]);
+      const auto row = std::size_t(at[1]);
+      const double east = at[0] - double(column);
+      const double up = at[1] - double(row);
+      float* const low = heights.data() + row * std::size_t(layout.columns) + column;
+      float* const high = low + layout.columns;
+      const double field = (1 - up) * ((1 - east) * low[0] + east * low[1]) +
+                           up * ((1 - east) * high[0] + east * high[1]);
+      const float off = float(
+          double(own.heights[std::size_t(j) * std::size_t(part.columns) + std::size_t(i)]) - field);
+      if (off > 0) {
+        for (float* post : {low, low + 1, high, high + 1}) {
+          *post += off;
+        }
+      }
+    }
+  }
+}
+}  // namespace
+
 std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& own) {
   const View view(dem, layout.frame);
   // Near a pole, longitudes run every way.
@@ -560,9 +614,6 @@ std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& o
                               layout.origin[1] + j * layout.spacing[1]));
     }
     return row;
-  };
-  const auto between = [](const XY& a, const XY& b, double share) {
-    return XY{a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
   };
   std::vector<float> heights;
   heights.reserve(std::size_t(columns) * std::size_t(rows));
@@ -581,6 +632,7 @@ std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& o
                                  between(north[k], north[k + 1], share), double(j % net) / net)));
     }
   }
+  raise_to(view, layout, own, net, heights);
   return heights;
 }
 }  // namespace terrain

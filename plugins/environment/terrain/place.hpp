@@ -39,6 +39,7 @@ Layout layout_of(const Dem& dem, const altiplan::Site& site, const Params& param
 /// Lowers heights above the ellipsoid by those of the geoid.
 void bring_to_sea_level(const Dem& dem, Posts& posts);
 
-/// Heights at the layout's posts, from the needed part of the model's own.
+/// Heights at the layout's posts, from the needed part of the model's own. They are raised where
+/// the ground between them would lie below one of the model's posts.
 std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& own);
 }  // namespace terrain

@@ -247,6 +247,22 @@ TEST_F(ZoneFile, RingsThatAreNoPolygonCloseAllThatTheyMayEnclose) {
   EXPECT_TRUE(says(*layer,
                    "rings that are no polygon, closed in all that they may enclose: 'bow', "
                    "'spike', 'hole'"));
+  // What a hole holds in a hole, or shares with one, is closed as well.
+  const std::string ring = "[[28, 60], [28.1, 60], [28.1, 60.1], [28, 60.1], [28, 60]]";
+  const std::string large =
+      "[[28.02, 60.02], [28.08, 60.02], [28.08, 60.08], [28.02, 60.08], [28.02, 60.02]]";
+  const std::string small =
+      "[[28.04, 60.04], [28.06, 60.04], [28.06, 60.06], [28.04, 60.06], [28.04, 60.04]]";
+  const std::string beside =
+      "[[28.06, 60.04], [28.09, 60.04], [28.09, 60.06], [28.06, 60.06], [28.06, 60.04]]";
+  for (const std::string& other : {small, beside}) {
+    for (const std::string& rings : {large + "," + other, other + "," + large}) {
+      const auto nested =
+          zones("n.geojson", collection({polygon("n", "[" + ring + "," + rings + "]")}));
+      EXPECT_LT(nested->clearance(at(28.05, 60.05, 10)), 0);
+      EXPECT_LT(nested->clearance(at(28.07, 60.05, 10)), 0);
+    }
+  }
   // To be kept in by them would be a guess.
   for (const std::string& rings : {bow, spike, hole}) {
     EXPECT_NE(refusal("in.geojson", collection({polygon("in", rings)}), ", file_kind: keep_in")
