@@ -120,6 +120,11 @@ class Stops(unittest.TestCase):
                               (items[:2] + [items[5]] + items[2:], "commands its gripper 3 times")):
             with self.subTest([item["command"] for item in changed]):
                 self.assertIn(said, check(changed))
+        wide = [{**item, "params": [item["params"][0], 90, *item["params"][2:]]} if item["command"] == 16 else item
+                for item in items]
+        self.assertIn("is not judged of acceptance radii above 10 m", check(wide, 1, "--autopilot", "px4"))
+        (self.folder / "own.param").write_text("WP_RADIUS_M,20\n")
+        self.assertIn("is not judged of acceptance radii", check(items, 1, "--params", "own.param"))
         (self.folder / "own.param").write_text("MIS_OPTIONS,0\n")  # the flight ends at the landing
         self.assertIn("waits 0 s of 8 at place 2", check(items, 1, "--params", "own.param"))
         # Positions alone neither wait nor land; the run's own result tells by its stops.

@@ -21,9 +21,8 @@ constexpr int kGripper = 211;
 
 double seconds(double parameter) { return parameter > 0 ? parameter : 0; }
 
-/// How far beside a place a flight may pass that comes to it: within the acceptance radius of an
-/// autopilot's defaults.
-constexpr double kBeside = 5;
+/// How far beside a place a copter may pass that comes to it: PX4's acceptance radius by default.
+constexpr double kBeside = 10;
 
 /// The commands that each flight carries out, and those that one may pass farther off.
 struct Flown {
@@ -200,6 +199,20 @@ std::string why_unknown(const formats::MissionFile& plan,
     if (task == Task::jump || task == Task::jump_to_tag || task == Task::condition ||
         task == Task::set_home) {
       return "jumps, conditions and new homes";
+    }
+  }
+  for (const FlownMission& flown : flights) {
+    const bool is_wide = std::any_of(
+        flown.parameters.begin(), flown.parameters.end(), [](const Parameters::Used& used) {
+          return (used.name == "NAV_ACC_RAD" || used.name == "WP_RADIUS_M") && used.value > kBeside;
+        });
+    const bool has_wide =
+        flown.autopilot.is_px4() &&
+        std::any_of(plan.commands.begin(), plan.commands.end(), [](const MissionCommand& command) {
+          return command.number == 16 && command.params[1] > kBeside;
+        });
+    if (is_wide || has_wide) {
+      return "acceptance radii above " + with_digits(kBeside, 3) + " m";
     }
   }
   const bool is_all_copters =
