@@ -123,7 +123,7 @@ READERS = {
         "axes swapped": box_geojson(RING.replace("8.1", "-122.4"), TALL).replace(
             b"[-122.4", b"[46.5,-122.4],[46.6"),
         "open": box_geojson("[[8,46],[8.1,46],[8.1,46.1],[8,46.1]]", TALL),
-        "a bow tie": box_geojson("[[8,46],[8.1,46.1],[8.1,46],[8,46.1],[8,46]]", TALL),
+        "two spikes": box_geojson("[[8,46],[8.1,46.1],[8,46],[8.1,46],[8,46]]", TALL),
         "three points": box_geojson("[[8,46],[8.1,46],[8,46]]", TALL),
         "no area": box_geojson("[[8,46],[8.1,46],[8.2,46],[8,46]]", TALL),
         "a curve": box_geojson(RING, TALL, "CircularString"),

@@ -284,6 +284,9 @@ class Gate {
     if (auto finding = undone(mission_, plan_, all)) {
       report.findings.push_back(std::move(*finding));
       ways_.resize(report.findings.size());
+    } else {
+      report.notes.emplace_back(
+          "the task is judged by places, lines and stops, not by photos (check --survey)");
     }
   }
 

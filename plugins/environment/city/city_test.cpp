@@ -155,6 +155,22 @@ TEST(City, HeightsAreNumbersOrTextAndTheRestByRule) {
   EXPECT_EQ(top(R"("height": null, "tall": 3)", ", height_property: tall"), 3);
 }
 
+TEST(City, AnOutlineThatMeetsItselfIsBuiltOnInAllItsLoops) {
+  const TempFolder folder;
+  const auto file = folder.write(
+      "bow.geojson",
+      R"({"type":"Feature","id":"bow","properties":{"height":20},"geometry":{"type":"Polygon",)"
+      R"("coordinates":[[[8,46],[8.001,46.001],[8.001,46],[8,46.001],[8,46]]]}})");
+  const World here = World().with_frame(Frame::geographic(8, 46, 46));
+  const auto layer = city("{file: " + file.string() + "}", here);
+  for (const double lon : {8.0002, 8.0008}) {
+    const auto [x, y] = here.frame().to_local(lon, 46.0005);
+    EXPECT_LT(layer->clearance({x, y, 10}), 0) << lon;
+  }
+  EXPECT_EQ(layer->info().notes.back(),
+            "rings that are no polygon, closed in all that they may enclose: 'bow'");
+}
+
 TEST(City, FootprintsStandOnTheGround) {
   const World ground = world_of(make_environment(
       "hills", "{base_m: 100, peaks: [{at_m: [40, 40], height_m: 30, sigma_m: [60, 60]}]}"));

@@ -89,9 +89,13 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
     buildings.frame = frame;
   }
   HeightRule rule(heights);
+  std::vector<std::string> unclear;
   for (const formats::GeoFeature& feature : json.features) {
     try {
       const double height = rule.height(feature);
+      if (!feature.problem.empty() && (unclear.empty() || unclear.back() != feature.id)) {
+        unclear.push_back(feature.id);
+      }
       for (formats::Polygon& part : formats::in_frame(feature.polygon, frame)) {
         const auto [low, high] = ground_below(part.outline, *site.before, base_m);
         buildings.list.push_back({feature.id, Prism{std::move(part.outline), std::move(part.holes),
@@ -103,6 +107,10 @@ Buildings read_footprints(const std::string& file, const Heights& heights, doubl
   }
   buildings.notes = {std::to_string(buildings.list.size()) + " buildings, " + json.skipped_text(),
                      rule.note()};
+  if (!unclear.empty()) {
+    buildings.notes.push_back("rings that are no polygon, closed in all that they may enclose: " +
+                              formats::names_text(unclear));
+  }
   if (!json.copyright.empty()) {
     buildings.notes.push_back("attribution: " + json.copyright);
   }
