@@ -79,6 +79,10 @@ class Stops(unittest.TestCase):
         self.assertIn("takes off again with MIS_OPTIONS 4 alone", passed)
         self.assertNotIn("is not flown", passed)
         self.call("export", "result.json", "--takeoff", "--land", "-o", "stops.waypoints")
+        world = (self.folder / "scenario.yaml").read_text()
+        for vehicle, code in (("vehicle: {type: copter, ", 0), ("vehicle: {", 1)):  # the format does not say
+            (self.folder / "type.yaml").write_text(world.replace("vehicle: {", vehicle))
+            self.call("check", "stops.waypoints", "--autopilot", "ardupilot", "--scenario", "type.yaml", code=code)
         lines = (self.folder / "stops.waypoints").read_text().splitlines()[2:]  # after home
         self.assertEqual([int(line.split("\t")[3]) for line in lines], [each["command"] for each in items])
 

@@ -489,6 +489,19 @@ PlanCheck prepared(PlanCheck plan) {
   return plan;
 }
 
+/// Who flies a mission of a format that does not say it, where the scenario does.
+void take_vehicle(host::GateOptions& options, host::VehicleType type,
+                  const formats::MissionFile& mission) {
+  using formats::Airframe;
+  if (!options.airframe && !mission.commands.empty() &&
+      mission.format != formats::MissionFile::Format::qgc_plan &&
+      type != host::VehicleType::by_wing) {
+    options.airframe = type == host::VehicleType::copter  ? Airframe::copter
+                       : type == host::VehicleType::plane ? Airframe::plane
+                                                          : Airframe::vtol;
+  }
+}
+
 JudgedPlan judge(PlanCheck& plan, const std::string& text,
                  const std::optional<host::Config>& scenario, const host::Overrides& overrides) {
   JudgedPlan judged{host::read_mission_file(plan.plan, text), {}, {}};
@@ -496,6 +509,9 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
     host::put_above_ground(plan.plan, judged.mission, *plan.above_ground_m);
   }
   host::expect_route(plan.plan, judged.mission);
+  if (scenario) {
+    take_vehicle(plan.gate, scenario->scenario.vehicle.type, judged.mission);
+  }
   plan.gate.world_during = world_during(plan, judged.mission, overrides);
   judged.world = busy("building the world", [&] {
     return host::build_mission(scenario ? *scenario : world_of(plan, judged.mission, overrides), 1);
