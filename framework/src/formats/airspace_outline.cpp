@@ -361,6 +361,13 @@ void cut_holes(Polygon& polygon, const std::vector<Ring>& holes, const std::stri
   };
   const auto fit = [&](const std::vector<Ring>& cut) { return polygon_problem(with(cut)).empty(); };
   const auto tell = [&] { doubts.add("hole that is no part of the zone, closed", zone); };
+  if (holes.empty()) {
+    return;
+  }
+  if (Polygon all = with(holes); polygon_problem(all).empty()) {
+    polygon = std::move(all);
+    return;
+  }
   std::vector<Ring> sound;
   std::copy_if(holes.begin(), holes.end(), std::back_inserter(sound),
                [&](const Ring& hole) { return fit({hole}); });
