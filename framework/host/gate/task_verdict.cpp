@@ -99,9 +99,7 @@ Finding finding_of(std::string message, bool is_unjudged) {
   finding.is_unjudged = is_unjudged;
   return finding;
 }
-}  // namespace
 
-namespace {
 /// Walks through the commands of a mission without jumps.
 class Places {
  public:
@@ -220,51 +218,14 @@ std::string why_unknown(const formats::MissionFile& plan,
                   [](const FlownMission& flown) { return flown.autopilot.is_copter(); });
   return plan.commands.empty() || is_all_copters ? "" : "aeroplanes";
 }
-}  // namespace
 
-std::vector<PlaceFlown> places_flown(const Route& route) {
-  std::vector<PlaceFlown> places;
-  for (std::size_t n = 0; n < route.size(); ++n) {
-    if (places.empty() || !is_same(places.back().at, route[n])) {
-      places.push_back({route[n]});
-    }
-    places.back().hold_s += n < route.leg_count() ? route.leg(n).hold_s : 0;
-    places.back().is_on_curve |= n > 0 && route.leg(n - 1).turns();
-  }
-  return places;
+Finding no_order(const TaskOrder& order) {
+  return finding_of(
+      "whether it does the scenario's task is not judged: it has no order: " + order.message, true);
 }
 
-std::optional<Finding> undone(const Mission& world, const formats::MissionFile& plan,
-                              const std::vector<FlownMission>& flights) {
-  if (const std::string why = why_unknown(plan, flights); !why.empty()) {
-    return finding_of("whether it does the scenario's task is not judged of " + why, true);
-  }
-  if (const auto found = undone(world, Places(plan, world.truth, flights).all())) {
-    return found;
-  }
-  // What is let go of elsewhere is not there any more.
-  const TaskOrder order = order_of_task(world, {});
-  const auto drops = std::count_if(order.passes.begin(), order.passes.end(),
-                                   [](const Pass& pass) { return pass.stop.drops; });
-  const auto releases =
-      std::count_if(plan.commands.begin(), plan.commands.end(),
-                    [](const MissionCommand& command) { return command.number == kGripper; });
-  if (releases != drops) {
-    return finding_of("commands its gripper " + std::to_string(releases) +
-                          " times, where the task drops cargo " + std::to_string(drops) +
-                          " times: which cargo is let go of is not judged",
-                      true);
-  }
-  return std::nullopt;
-}
-
-std::optional<Finding> undone(const Mission& world, const std::vector<PlaceFlown>& places) {
-  const TaskOrder order = order_of_task(world, {});
-  if (order.status != PlanStatus::solved) {
-    return finding_of(
-        "whether it does the scenario's task is not judged: it has no order: " + order.message,
-        true);
-  }
+std::optional<Finding> undone(const Mission& world, const TaskOrder& order,
+                              const std::vector<PlaceFlown>& places) {
   std::vector<bool> used(places.size());  // by a place of the task: another is another visit
   const std::string of_all = " of the task's " + std::to_string(order.passes.size());
   for (std::size_t k = 0; k < order.passes.size(); ++k) {
@@ -300,5 +261,50 @@ std::optional<Finding> undone(const Mission& world, const std::vector<PlaceFlown
     return finding_of("does not end where it begins, as its task is closed", false);
   }
   return std::nullopt;
+}
+}  // namespace
+
+std::vector<PlaceFlown> places_flown(const Route& route) {
+  std::vector<PlaceFlown> places;
+  for (std::size_t n = 0; n < route.size(); ++n) {
+    if (places.empty() || !is_same(places.back().at, route[n])) {
+      places.push_back({route[n]});
+    }
+    places.back().hold_s += n < route.leg_count() ? route.leg(n).hold_s : 0;
+    places.back().is_on_curve |= n > 0 && route.leg(n - 1).turns();
+  }
+  return places;
+}
+
+std::optional<Finding> undone(const Mission& world, const formats::MissionFile& plan,
+                              const std::vector<FlownMission>& flights) {
+  if (const std::string why = why_unknown(plan, flights); !why.empty()) {
+    return finding_of("whether it does the scenario's task is not judged of " + why, true);
+  }
+  const TaskOrder order = order_of_task(world, {});
+  if (order.status != PlanStatus::solved) {
+    return no_order(order);
+  }
+  if (auto found = undone(world, order, Places(plan, world.truth, flights).all())) {
+    return found;
+  }
+  // What is let go of elsewhere is not there any more.
+  const auto drops = std::count_if(order.passes.begin(), order.passes.end(),
+                                   [](const Pass& pass) { return pass.stop.drops; });
+  const auto releases =
+      std::count_if(plan.commands.begin(), plan.commands.end(),
+                    [](const MissionCommand& command) { return command.number == kGripper; });
+  if (releases != drops) {
+    return finding_of("commands its gripper " + std::to_string(releases) +
+                          " times, where the task drops cargo " + std::to_string(drops) +
+                          " times: which cargo is let go of is not judged",
+                      true);
+  }
+  return std::nullopt;
+}
+
+std::optional<Finding> undone(const Mission& world, const std::vector<PlaceFlown>& places) {
+  const TaskOrder order = order_of_task(world, {});
+  return order.status == PlanStatus::solved ? undone(world, order, places) : no_order(order);
 }
 }  // namespace altiplan::host

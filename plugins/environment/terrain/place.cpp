@@ -542,59 +542,77 @@ void bring_to_sea_level(const Dem& dem, Posts& posts) {
   }
 }
 
-/// Exact positions are computed every `net` posts and interpolated between: over so few posts a
-/// projection deviates by less than 0.001 of their spacing, and it costs a microsecond per point.
 namespace {
-XY between(const XY& a, const XY& b, double share) {
-  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+/// Calls `use(i, j, position)` for each post, row by row. Positions are computed exactly every
+/// `net` posts, at the last ones, and interpolated between: over so few posts a projection deviates
+/// by less than 0.001 of their spacing, and it costs a microsecond per point.
+template <class Exact, class Use>
+void over_net(int columns, int rows, int net, const Exact& exact, const Use& use) {
+  const auto between = [](const XY& a, const XY& b, double share) {
+    return XY{a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+  };
+  // Of the stretch from one knot to the next, which ends at the last post.
+  const auto end = [net](int begin, int last) { return std::min(begin + net, last); };
+  const auto share_of = [&](int at, int begin, int last) {
+    return begin < last ? double(at - begin) / (end(begin, last) - begin) : 0;
+  };
+  const auto knot_row = [&](int j) {
+    std::vector<XY> row;
+    for (int i = 0; i < columns; i += net) {
+      row.push_back(exact(i, j));
+    }
+    row.push_back(exact(columns - 1, j));
+    return row;
+  };
+  std::vector<XY> south;
+  std::vector<XY> north = knot_row(0);
+  for (int j = 0; j < rows; ++j) {
+    const int begin = j / net * net;
+    if (j == begin) {
+      south = std::move(north);
+      north = knot_row(end(j, rows - 1));
+    }
+    const double up = share_of(j, begin, rows - 1);
+    for (int i = 0; i < columns; ++i) {
+      const auto k = std::size_t(i / net);
+      const double share = share_of(i, int(k) * net, columns - 1);
+      use(i, j,
+          between(between(south[k], south[k + 1], share), between(north[k], north[k + 1], share),
+                  up));
+    }
+  }
 }
 
 /// Raises the posts about each of the model's own below which their ground would lie: summits stay.
 void raise_to(const View& view, const Layout& layout, const Posts& own, int net,
               std::vector<float>& heights) {
   const Part& part = own.part;
-  const int knots = (part.columns - 1) / net + 2;
-  const auto knot_row = [&](int j) {
-    std::vector<XY> row;
-    for (int k = 0; k < knots; ++k) {
-      const XY at = view.local(part.column + k * net, part.row + j);
-      row.push_back({(at[0] - layout.origin[0]) / layout.spacing[0],
-                     (at[1] - layout.origin[1]) / layout.spacing[1]});
-    }
-    return row;
+  const auto in_layout = [&](int i, int j) {
+    const XY at = view.local(part.column + i, part.row + j);
+    return XY{(at[0] - layout.origin[0]) / layout.spacing[0],
+              (at[1] - layout.origin[1]) / layout.spacing[1]};
   };
-  std::vector<XY> south;
-  std::vector<XY> north = knot_row(0);
-  for (int j = 0; j < part.rows; ++j) {
-    if (j % net == 0) {
-      south = std::move(north);
-      north = knot_row(j + net);
+  const float* post = own.heights.data();
+  over_net(part.columns, part.rows, net, in_layout, [&](int, int, const XY& at) {
+    const double height = *post++;
+    if (!(at[0] >= 0 && at[1] >= 0 && at[0] < layout.columns - 1 && at[1] < layout.rows - 1)) {
+      return;
     }
-    for (int i = 0; i < part.columns; ++i) {
-      const std::size_t k = std::size_t(i / net);
-      const double share = double(i % net) / net;
-      const XY at = between(between(south[k], south[k + 1], share),
-                            between(north[k], north[k + 1], share), double(j % net) / net);
-      if (!(at[0] >= 0 && at[1] >= 0 && at[0] < layout.columns - 1 && at[1] < layout.rows - 1)) {
-        continue;
-      }
-      const auto column = std::size_t(at[0]);
-      const auto row = std::size_t(at[1]);
-      const double east = at[0] - double(column);
-      const double up = at[1] - double(row);
-      float* const low = heights.data() + row * std::size_t(layout.columns) + column;
-      float* const high = low + layout.columns;
-      const double field = (1 - up) * ((1 - east) * low[0] + east * low[1]) +
-                           up * ((1 - east) * high[0] + east * high[1]);
-      const float off = float(
-          double(own.heights[std::size_t(j) * std::size_t(part.columns) + std::size_t(i)]) - field);
-      if (off > 0) {
-        for (float* post : {low, low + 1, high, high + 1}) {
-          *post += off;
-        }
+    const auto column = std::size_t(at[0]);
+    const auto row = std::size_t(at[1]);
+    const double east = at[0] - double(column);
+    const double up = at[1] - double(row);
+    float* const low = heights.data() + row * std::size_t(layout.columns) + column;
+    float* const high = low + layout.columns;
+    const double field = (1 - up) * ((1 - east) * low[0] + east * low[1]) +
+                         up * ((1 - east) * high[0] + east * high[1]);
+    const auto off = float(height - field);
+    if (off > 0) {
+      for (float* corner : {low, low + 1, high, high + 1}) {
+        *corner += off;
       }
     }
-  }
+  });
 }
 }  // namespace
 
@@ -604,34 +622,14 @@ std::vector<float> resample(const Dem& dem, const Layout& layout, const Posts& o
   const double first_lat = dem.south_west[1];
   const double last_lat = first_lat + (dem.rows - 1) * dem.step[1];
   const int net = dem.geographic && std::max(-first_lat, last_lat) > 80 ? 1 : 16;
-  const int columns = layout.columns;
-  const int rows = layout.rows;
-  const int knots = (columns - 1) / net + 2;
-  const auto knot_row = [&](int j) {
-    std::vector<XY> row;
-    for (int k = 0; k < knots; ++k) {
-      row.push_back(view.post(layout.origin[0] + k * net * layout.spacing[0],
-                              layout.origin[1] + j * layout.spacing[1]));
-    }
-    return row;
+  const auto in_model = [&](int i, int j) {
+    return view.post(layout.origin[0] + i * layout.spacing[0],
+                     layout.origin[1] + j * layout.spacing[1]);
   };
   std::vector<float> heights;
-  heights.reserve(std::size_t(columns) * std::size_t(rows));
-  std::vector<XY> south;
-  std::vector<XY> north = knot_row(0);
-  for (int j = 0; j < rows; ++j) {
-    if (j % net == 0) {
-      south = std::move(north);
-      north = knot_row(j + net);
-    }
-    for (int i = 0; i < columns; ++i) {
-      const std::size_t k = std::size_t(i / net);
-      const double share = double(i % net) / net;
-      heights.push_back(
-          height_at(own, between(between(south[k], south[k + 1], share),
-                                 between(north[k], north[k + 1], share), double(j % net) / net)));
-    }
-  }
+  heights.reserve(std::size_t(layout.columns) * std::size_t(layout.rows));
+  over_net(layout.columns, layout.rows, net, in_model,
+           [&](int, int, const XY& post) { heights.push_back(height_at(own, post)); });
   raise_to(view, layout, own, net, heights);
   return heights;
 }
