@@ -7,7 +7,9 @@ import re
 import struct
 import subprocess
 import termios
+import threading
 
+END = b"\0"  # no program here prints one
 COLOR = re.compile(r"\033\[[0-9;]*m")
 
 
@@ -18,18 +20,22 @@ def on_terminal(call, columns, cwd, **environment):
     plain = {key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "TERM")}
     process = subprocess.Popen(list(map(str, call)), stdin=subprocess.DEVNULL, stdout=slave, stderr=slave,
                                cwd=cwd, env=plain | {"TERM": "xterm"} | environment)
-    os.close(slave)
+
+    def mark_the_end():
+        process.wait()
+        os.write(slave, END)
+
+    # The slave stays open until a mark behind the last byte has been read: a read of a terminal that
+    # its last program has closed may fail while printed text is still on its way.
+    waiting = threading.Thread(target=mark_the_end)
+    waiting.start()
     printed = b""
-    while True:
-        try:
-            some = os.read(master, 65536)
-        except OSError:  # the program has closed its end
-            break
-        if not some:
-            break
-        printed += some
+    while not printed.endswith(END):
+        printed += os.read(master, 65536)
+    waiting.join()
+    os.close(slave)
     os.close(master)
-    return printed.decode().replace("\r\n", "\n"), process.wait()
+    return printed[:-len(END)].decode().replace("\r\n", "\n"), process.wait()
 
 
 def progress_of(printed):
