@@ -7,6 +7,7 @@
 #include <map>
 
 #include "airspace_parts.hpp"
+#include "last_read.hpp"
 
 namespace altiplan::formats {
 namespace {
@@ -217,7 +218,8 @@ double standard_to_sea(double metres, double qnh_hpa) {
   return kT0 / kLapse * (1 - ratio * (1 - kLapse * metres / kT0));
 }
 
-std::optional<Airspace> read_airspace(const std::string& file, const std::string& text) {
+namespace {
+std::optional<Airspace> parse_airspace(const std::string& file, const std::string& text) {
   const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
   if (first == std::string::npos) {
     return std::nullopt;
@@ -229,5 +231,11 @@ std::optional<Airspace> read_airspace(const std::string& file, const std::string
     return read_airspace_json(file, text);
   }
   return is_openair(text) ? std::optional(read_openair(file, text)) : std::nullopt;
+}
+}  // namespace
+
+std::optional<Airspace> read_airspace(const std::string& file, const std::string& text) {
+  static LastRead<std::optional<Airspace>> last;
+  return last.get(file, text, parse_airspace);
 }
 }  // namespace altiplan::formats

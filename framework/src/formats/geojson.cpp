@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/input_file.hpp"
+#include "last_read.hpp"
 #include "text_file.hpp"
 
 namespace altiplan::formats {
@@ -306,24 +306,7 @@ GeoJson parse_geojson(const std::string& file, const std::string& text) {
 }  // namespace
 
 GeoJson read_geojson(const std::string& file) {
-  // Commands ask for a file's properties first, then a plugin for its zones.
-  struct Last {
-    std::string file;
-    std::string text;
-    GeoJson json;
-  };
-  static std::mutex mutex;
-  static std::optional<Last> last;
-  constexpr std::size_t kMaxKept = 16 << 20;
-  std::string text = read_file(file);
-  const std::lock_guard lock(mutex);
-  if (!last || last->file != file || last->text != text) {
-    GeoJson json = parse_geojson(file, text);
-    if (text.size() > kMaxKept) {
-      return json;
-    }
-    last = {file, std::move(text), std::move(json)};
-  }
-  return last->json;
+  static LastRead<GeoJson> last;
+  return last.get(file, read_file(file), parse_geojson);
 }
 }  // namespace altiplan::formats
