@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -58,26 +56,24 @@ class NodeStore {
   /// Starts a generation of `count` nodes, all unseen.
   void reset(std::size_t count) {
     if (count > count_) {
-      nodes_.reset();
       count_ = 0;
-      nodes_.reset(static_cast<Node*>(std::calloc(count, sizeof(Node))));
-      if (!nodes_) {
-        throw std::bad_alloc();
-      }
+      memory_ = {};
+      memory_ = ZeroMemory(count * sizeof(Node));
+      nodes_ = static_cast<Node*>(memory_.data());
       count_ = count;
       generation_ = 0;
     } else if (generation_ == std::numeric_limits<Stamp>::max()) {
       for (std::size_t i = 0; i < count_; ++i) {
-        nodes_.get()[i].stamp = 0;
+        nodes_[i].stamp = 0;
       }
       generation_ = 0;
     }
     ++generation_;
   }
-  bool seen(std::size_t i) const { return nodes_.get()[i].stamp == generation_; }
+  bool seen(std::size_t i) const { return nodes_[i].stamp == generation_; }
   /// The node, first set to `fresh` if this generation has not seen it.
   Node& at(std::size_t i, const Node& fresh) {
-    Node& node = nodes_.get()[i];
+    Node& node = nodes_[i];
     if (node.stamp != generation_) {
       node = fresh;
       node.stamp = generation_;
@@ -85,17 +81,15 @@ class NodeStore {
     return node;
   }
   /// A node that this generation has seen.
-  Node& operator[](std::size_t i) { return nodes_.get()[i]; }
-  const Node& operator[](std::size_t i) const { return nodes_.get()[i]; }
+  Node& operator[](std::size_t i) { return nodes_[i]; }
+  const Node& operator[](std::size_t i) const { return nodes_[i]; }
   std::size_t bytes() const { return count_ * sizeof(Node); }
   /// Begins to fetch a node, if there is one of that number, into the processor's cache.
-  void prefetch(std::size_t i) const { __builtin_prefetch(nodes_.get() + std::min(i, count_ - 1)); }
+  void prefetch(std::size_t i) const { __builtin_prefetch(nodes_ + std::min(i, count_ - 1)); }
 
  private:
-  struct Free {
-    void operator()(Node* nodes) const { std::free(nodes); }
-  };
-  std::unique_ptr<Node, Free> nodes_;
+  ZeroMemory memory_;
+  Node* nodes_ = nullptr;
   std::size_t count_ = 0;
   Stamp generation_ = 0;
 };
