@@ -41,6 +41,15 @@ std::string MoveRules::sharp_turns() const {
          " m: use larger cells, or hybrid_astar, whose legs curve";
 }
 
+std::string MoveRules::link_refused_by() const {
+  if (refused_[by_link] == 0) {
+    return "";
+  }
+  const auto& [before, a, b] = refused_link_;
+  const auto found = leg_violations(before, a, b, request_, 0);
+  return found.empty() ? "" : found.front().constraint;
+}
+
 std::string MoveRules::refusals() const {
   std::array<std::int64_t, rule_count> refused = refused_;
   std::string layer = refused_layer_;
@@ -64,7 +73,7 @@ std::string MoveRules::refusals() const {
       "altitude",
       refused_constraint_,
       "the vehicle's body",
-      refused_link_ + " where start or goal join the lattice"};
+      link_refused_by() + " on legs that are no step of the lattice"};
   std::vector<int> order;
   for (int rule = 0; rule < rule_count; ++rule) {
     if (refused[std::size_t(rule)] > 0) {

@@ -339,8 +339,7 @@ bool MoveRules::any_leg_ok(const std::optional<Approach>& before, const Vec3& a,
   }
   if (!before || !leg_ok(std::nullopt, a, b, request_)) {
     ++refused_[by_link];
-    const auto found = leg_violations(before, a, b, request_, 0);
-    refused_link_ = found.empty() ? "" : found.front().constraint;
+    refused_link_ = {before, a, b};
   } else {
     ++refused_[by_turn];
   }

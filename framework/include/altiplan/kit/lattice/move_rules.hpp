@@ -136,8 +136,8 @@ class ALTIPLAN_API MoveRules {
   /// null.
   const std::shared_ptr<const VoxelGrid>& wide_grid() const { return wide_grid_; }
 
-  /// leg_ok for legs that are no steps (the links of start and goal; the first step of a vehicle
-  /// that has a heading), with refusals counted per constraint.
+  /// leg_ok for legs that are no steps (the links of start and goal; legs of any angle; the first
+  /// step of a vehicle that has a heading), with refusals counted.
   bool any_leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b);
 
   /// True if a check that depends on the previous leg refused anything: then one parent per cell
@@ -178,6 +178,8 @@ class ALTIPLAN_API MoveRules {
     rule_count
   };
   DirectionMask directions_kept();
+  /// The constraint that refused the last leg that is no step.
+  std::string link_refused_by() const;
   /// The height of cells whose climbing steps the climb limit would keep, if it rules some out.
   std::string lower_cells(int ruled_out) const;
   void find_turns();
@@ -220,7 +222,10 @@ class ALTIPLAN_API MoveRules {
   std::array<std::int64_t, rule_count> refused_{};
   std::string refused_constraint_;
   std::string refused_layer_;
-  std::string refused_link_;
+  struct {
+    std::optional<Approach> before;
+    Vec3 a, b;
+  } refused_link_;  ///< the last one
   std::string steps_refused_by_;
   std::int64_t moves_checked_ = 0;
   bool admit_needed_parent_ = false;
