@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/lattice/line_of_sight.hpp"
@@ -253,6 +254,37 @@ TEST(Sees, AsksTheWorldForNoObstacle) {
   EXPECT_TRUE(by_cells.sees(std::nullopt, {0, 0, 0}, {9, 7, 1}));
   MoveRules exact(request, lattice, MoveCheck::exact, CornerRule::free_box);
   EXPECT_FALSE(exact.sees(std::nullopt, {0, 0, 0}, {9, 7, 1}));
+}
+
+TEST(AnyLeg, IsWorkedOutOnceWhereItIsRefused) {
+  /// Blocks everything, and counts how often it is asked anything.
+  class Counting final : public Environment {
+   public:
+    mutable int asked = 0;
+
+   private:
+    Box do_bounds() const override { return {}; }
+    double do_clearance(const Vec3&) const override {
+      ++asked;
+      return -kInfinity;
+    }
+    bool do_blocked(const Vec3&, const Vec3&, double) const override {
+      ++asked;
+      return true;
+    }
+  };
+  Request request = open_request();
+  const auto layer = std::make_shared<Counting>();
+  request.world = std::make_shared<World>(testing::world_of(layer));
+  const Lattice lattice(request, {10, 10, 10}, Neighbourhood::all, {});
+  const Vec3 a = lattice.position({0, 0, 0});
+  const Vec3 b = lattice.position({7, 3, 1});
+  EXPECT_FALSE(leg_ok(std::nullopt, a, b, request));
+  const int once = std::exchange(layer->asked, 0);
+  MoveRules rules(request, lattice, MoveCheck::exact, CornerRule::free_box);
+  EXPECT_FALSE(rules.any_leg_ok(std::nullopt, a, b));
+  EXPECT_EQ(layer->asked, once);
+  EXPECT_EQ(rules.refusals(), "clearance on legs that are no step of the lattice (1)");
 }
 }  // namespace
 }  // namespace altiplan::kit::move_rules_test
