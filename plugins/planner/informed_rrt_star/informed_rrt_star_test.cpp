@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/star_planners.hpp"
+#include "reference/trees_in_time.hpp"
 
 namespace altiplan::informed_rrt_star_test {
 namespace {
@@ -26,6 +27,10 @@ TEST(InformedRrtStar, IsShorterThanRrtStarAfterTheSameSamples) {
     plain += length(make_planner("rrt_star", yaml)->plan(request).route);
   }
   EXPECT_LT(informed, plain);
+}
+
+TEST(InformedRrtStar, KeepsOffMovingObstaclesInTime) {
+  testing::expect_routes_in_time("informed_rrt_star", "{max_iterations: 3000}");
 }
 }  // namespace
 }  // namespace altiplan::informed_rrt_star_test

@@ -7,6 +7,7 @@
 //   1998.
 // Guarantees: every leg satisfies the constraints; the absence of a route is never proved. Without
 //   turn limits, and with random_share > 0, a route that consists of steps is found eventually.
+//   Moving obstacles that are known beforehand are kept off in time; there are no waits.
 // Complexity: O(n log n) for n nodes with weight_goal 0; with both weights the choice of a node
 //   grows roughly as n^0.65.
 // Deviations: eqs. (2) to (5) alone would generate the same child forever, so a node grows toward
@@ -116,8 +117,8 @@ class Rrt final : public Planner {
   }
 
   std::unique_ptr<Session> do_begin(const Request& request) const override {
-    if (params_.turn_radius(request) > 0) {
-      return Planner::do_begin(request);  // trees of poses do not persist
+    if (params_.turn_radius(request) > 0 || avoids_moving(request)) {
+      return Planner::do_begin(request);  // trees of poses, and in time, do not persist
     }
     return std::make_unique<rrt::TreeSession>(params_.settings(request), params_.cut_off, request);
   }

@@ -10,6 +10,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/sampling/sampling.hpp"
+#include "altiplan/kit/sampling/tree_time.hpp"
 #include "altiplan/plan_result.hpp"
 #include "altiplan/request.hpp"
 #include "rrt_tree.hpp"
@@ -47,7 +48,11 @@ struct Damage {
 class Growth {
  public:
   Growth(const Settings& settings, const Request& request, Tree& tree)
-      : settings_(settings), request_(request), sampled_(kit::sampled_box(request)), tree_(tree) {}
+      : settings_(settings),
+        request_(request),
+        sampled_(kit::sampled_box(request)),
+        in_time_(avoids_moving(request)),
+        tree_(tree) {}
 
   Node root() const { return root_; }
   void set_root(Node root) { root_ = root; }
@@ -197,12 +202,18 @@ class Growth {
                        [&](Node below) { return follows(onward(to_node, at), child, below); });
   }
 
+  /// True if the leg from a node satisfies every constraint and meets no moving obstacle.
+  bool may_fly(Node node, const Vec3& to) const {
+    return leg_ok(before(node), tree_.point(node), to, request_) &&
+           (!in_time_ || kit::leg_in_time(tree_.legs(), node, to, request_));
+  }
+
   /// Adds a node one step from `near` in a direction; kNone if a constraint forbids the leg.
   Node extend(Node near, const Vec3& way) {
     const Vec3& from = tree_.point(near);
     const double length = way.norm();
     const Vec3 p = from + settings_.step / length * way;
-    if (length > 0 && leg_ok(before(near), from, p, request_)) {
+    if (length > 0 && may_fly(near, p)) {
       const Node added = tree_.add(p, near);
       reach_out(added);
       return added;
@@ -236,8 +247,7 @@ class Growth {
     const Vec3& p = tree_.point(node);
     const Vec3& goal = request_.goal.position;
     const bool is_there = request_.goal.reached_at(p);
-    if (!is_there &&
-        ((goal - p).norm() > 2 * settings_.step || !leg_ok(before(node), p, goal, request_))) {
+    if (!is_there && ((goal - p).norm() > 2 * settings_.step || !may_fly(node, goal))) {
       return;
     }
     Polyline route = tree_.way_to(node);
@@ -303,6 +313,7 @@ class Growth {
   const Settings settings_;
   const Request& request_;
   const Box sampled_;
+  const bool in_time_;  ///< among moving obstacles
   Tree& tree_;
   std::optional<BudgetWatch> watch_;
   std::uint64_t iterations_ = 0;

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "reference/trees_in_time.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::rrt_test {
@@ -176,6 +177,10 @@ TEST(Rrt, WithoutARouteItSaysHowNearItCame) {
   EXPECT_EQ(longer.status, PlanStatus::no_route);
   EXPECT_NE(longer.message.find("refused: the route's length is"), std::string::npos)
       << longer.message;
+}
+
+TEST(Rrt, KeepsOffMovingObstaclesInTime) {
+  testing::expect_routes_in_time("rrt", "{max_iterations: 20000}");
 }
 }  // namespace
 }  // namespace altiplan::rrt_test

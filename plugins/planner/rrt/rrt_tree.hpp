@@ -50,6 +50,7 @@ class Tree {
   Node parent(Node node) const { return legs_.parent(node); }
   Place place(Node node) const { return marks_[std::size_t(node)].place; }
   bool is_rooted(Node node) const { return place(node) < Place::loose; }
+  const kit::LegTree& legs() const { return legs_; }
   Polyline way_to(Node node) const { return legs_.way_to(node); }
   /// Approach of the vehicle to a node from `root`, which it approaches by `to_root`.
   std::optional<Approach> approach(Node node, Node root,

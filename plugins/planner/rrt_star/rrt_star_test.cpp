@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/star_planners.hpp"
+#include "reference/trees_in_time.hpp"
 
 namespace altiplan::rrt_star_test {
 namespace {
@@ -42,6 +43,10 @@ TEST(RrtStar, BesideTheRouteItIsShorterForTheSameSamples) {
     anywhere += length_with("0");
   }
   EXPECT_LT(beside, 0.99 * anywhere);
+}
+
+TEST(RrtStar, KeepsOffMovingObstaclesInTime) {
+  testing::expect_routes_in_time("rrt_star", "{max_iterations: 3000}");
 }
 }  // namespace
 }  // namespace altiplan::rrt_star_test

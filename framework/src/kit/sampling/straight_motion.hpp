@@ -6,9 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "altiplan/check.hpp"
 #include "altiplan/kit/sampling/leg_rules.hpp"
 #include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/kit/sampling/star_search.hpp"
+#include "altiplan/kit/sampling/tree_time.hpp"
 
 namespace altiplan::kit {
 
@@ -32,6 +34,7 @@ class StraightMotion {
         before_start_(request.before_start()),
         objective_(request.objective.get()),
         is_point_(request.goal.tolerance_m == 0),
+        in_time_(avoids_moving(request)),
         axes_(std::max(1, free_axes(sampled_box(request)))) {}
 
   static const Vec3& place(const State& state) { return state; }
@@ -109,15 +112,19 @@ class StraightMotion {
     return x_new == toward || x_new == at ? std::nullopt : std::optional(x_new);
   }
 
-  bool joins(Node from, const State& to) { return rules_.ok(behind(from), state(from), to); }
+  bool joins(Node from, const State& to) {
+    return rules_.ok(behind(from), state(from), to) &&
+           (!in_time_ || leg_in_time(memory_.legs, from, to, request_));
+  }
   void added(Node) {}
 
   /// True if the leg, the turns at both of its ends and the turns that follow satisfy every
-  /// constraint.
+  /// constraint, and no moving obstacle is met below the node at its new times.
   bool may_move(Node node, Node parent) {
     const auto before = behind(parent);
     return rules_.ok(before, state(parent), state(node)) &&
-           turns_follow(onward(before, state(parent)), node);
+           turns_follow(onward(before, state(parent)), node) &&
+           (!in_time_ || branch_in_time(memory_.legs, node, parent, request_));
   }
   void moved(Node) {}
 
@@ -152,6 +159,7 @@ class StraightMotion {
   std::optional<Approach> before_start_;
   const Objective* objective_;  ///< null: length
   bool is_point_;               ///< the goal has no tolerance
+  bool in_time_;                ///< among moving obstacles
   int axes_;
 };
 }  // namespace altiplan::kit
