@@ -390,6 +390,26 @@ class CheckPlan(PlanCase):
         two, _ = self.call("mission.plan", "--terrain", "tiles", "--terrain", TERRAIN, "--min-agl", "10", code=0)
         self.assertEqual(one.splitlines()[0], two.splitlines()[0])
 
+    def test_tiles_leave_no_gaps_on_long_missions(self):
+        """Over tiles of a degree, where lengths are wrong in longitude and latitude: along a seam, and across."""
+        (self.folder / "tiles").mkdir()
+        for lat in (40, 41, 42):
+            for lon in (10, 11):
+                summit = lambda i, j: 600 + 13 * ((i * 7 + j * 5 + lat) % 11)  # of the post, from the north-west
+                rows = "\n".join(" ".join(str(summit(i, j)) for i in range(61)) for j in range(61))
+                (self.folder / f"tiles/{lat}_{lon}.asc").write_text(
+                    f"ncols 61\nnrows 61\nxllcenter {lon}\nyllcenter {lat}\ncellsize {1 / 60:.12f}\n{rows}\n")
+        ways = {"diagonal": [[10.2, 40.2], [10.9, 41.2], [11.7, 42.5]], "seam": [[11, 40.3], [11, 42.5]]}
+        for name, way in ways.items():
+            for height, code in ((1000, 0), (740, 1)):
+                with self.subTest(name, height=height):
+                    self.write([item([*at, height], n + 1) for n, at in enumerate(way)],
+                               plannedHomePosition=[way[0][1], way[0][0], 700])
+                    out, _ = self.call("mission.plan", "--terrain", "tiles", "--crs", "EPSG:4326", "--min-agl", "50",
+                                       code=code)
+                    self.assertNotIn("no ground of known height", out)
+                    self.assertEqual("the height above ground is" in out, code == 1, out)
+
     def test_the_model_below_the_mission_gives_the_frame(self):
         """Models of other regions that are named first change no figure, and hide no zone."""
         self.write([item([lon, lat, 1500], n + 1) for n, (lon, lat, _) in enumerate(POINTS)])

@@ -155,7 +155,7 @@ std::vector<host::Tile> models_about(const PlanCheck& plan, const formats::Missi
   };
   std::stable_sort(tiles.begin(), tiles.end(),
                    [&](const host::Tile& a, const host::Tile& b) { return held(a) > held(b); });
-  return tiles;
+  return host::united(std::move(tiles), registry);
 }
 
 /// The scenario that the options describe.
@@ -172,7 +172,7 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
     while (!ids.insert(id).second) {
       id = "terrain " + std::to_string(ids.size() + 1);
     }
-    text += "  - terrain: {file: " + path_text(model.file.string()) +
+    text += "  - terrain: {" + host::files_text(model) +
             (plan.crs.empty() ? "" : ", crs: " + host::exact_json_text(plan.crs)) + ", " + voids +
             "}\n    id: " + host::exact_json_text(id) + "\n";
   }

@@ -101,13 +101,21 @@ bool Tile::holds(double lon, double lat) const {
   }
 }
 
+std::string files_text(const Tile& tile) {
+  std::string tiles;
+  for (const fs::path& file : tile.more) {
+    tiles += (tiles.empty() ? ", tiles: [" : ", ") + exact_json_text(fs::absolute(file).string());
+  }
+  return "file: " + exact_json_text(fs::absolute(tile.file).string()) +
+         (tiles.empty() ? "" : tiles + "]");
+}
+
 std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry,
                                          const std::string& voids) {
   // The name has no folder that the file would be relative to.
-  const Value parameters =
-      parse_yaml("{file: " + exact_json_text(tile.file.string()) + ", voids: " + voids +
-                     (tile.crs.empty() ? "" : ", crs: " + tile.crs) + "}",
-                 "terrain");
+  const Value parameters = parse_yaml("{" + files_text(tile) + ", voids: " + voids +
+                                          (tile.crs.empty() ? "" : ", crs: " + tile.crs) + "}",
+                                      "terrain");
   return registry.get("environment", "terrain").environment(&parameters, site);
 }
 
@@ -182,6 +190,27 @@ void drop_distant(std::vector<Tile>& tiles, const Frame& frame, const Box& reach
     }
     return box.is_bounded() && box.intersected(reached).is_empty();
   });
+}
+
+std::vector<Tile> united(std::vector<Tile> tiles, Registry& registry) {
+  if (tiles.size() < 2) {
+    return tiles;
+  }
+  Tile all = tiles.front();
+  for (auto tile = tiles.begin() + 1; tile != tiles.end(); ++tile) {
+    if (tile->crs != all.crs) {
+      return tiles;
+    }
+    all.more.push_back(tile->file);
+  }
+  try {
+    return {probe(all, registry)};
+  } catch (const ParameterError& error) {
+    if (error.key() != "tiles" && error.key() != "max_posts") {
+      throw;
+    }
+    return tiles;
+  }
 }
 
 void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point) {

@@ -14,7 +14,8 @@ namespace altiplan::host {
 /// An elevation model, in the frame that it would give a world.
 struct Tile {
   std::filesystem::path file;
-  std::string crs;  ///< to be named in a scenario; "" if the file names it
+  std::vector<std::filesystem::path> more;  ///< files that are one model with it
+  std::string crs;                          ///< to be named in a scenario; "" if the file names it
   Frame frame;
   Box bounds;
   double spacing_m = 0;  ///< of its posts, the larger one
@@ -42,10 +43,17 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry);
 /// Drops those that do not reach into the box of that frame.
 void drop_distant(std::vector<Tile>& tiles, const Frame& frame, const Box& reached);
 
+/// One model of them all where they are of one grid and fill a rectangle: where they have to be
+/// resampled, each alone ends within its own sides, and gaps are left between them. Else as they
+/// are.
+std::vector<Tile> united(std::vector<Tile> tiles, Registry& registry);
+
 /// Throws Error for a point beyond all tiles, naming what they cover, and, where the point with its
 /// numbers swapped or their signs changed lies within, that one.
 void expect_covered(const std::vector<Tile>& tiles, const WishedPoint& point);
 
+/// Its files as parameters of the plugin: "file: …, tiles: […]".
+std::string files_text(const Tile& tile);
 /// The layer's entry of `environment`; `file` as the scenario has it.
 std::string terrain_entry(const Tile& tile, const std::string& file);
 }  // namespace altiplan::host

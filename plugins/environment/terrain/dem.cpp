@@ -315,11 +315,13 @@ Dem read_dem(const Params& params, bool may_read_a_part) try {
   const std::vector<fs::path> files = look_up(params);
   if (files.size() == 1 && is_small(files)) {
     if (std::optional<Dem> plain = read_plain(params, files.front())) {
+      plain->file = params.file;
       return std::move(*plain);
     }
   }
   const gdal::Quiet quiet;
   Dem dem;
+  dem.file = params.file;
   dem.dataset = open(params, files);
   void* dataset = dem.dataset.get();
   read_size(params, dataset, may_read_a_part, dem);

@@ -16,6 +16,7 @@ enum class Voids { refuse, fill_m, neighbours };
 
 struct Params {
   altiplan::Path file;
+  std::vector<altiplan::Path> tiles;
   Voids voids = Voids::refuse;
   std::optional<double> fill_m;
   std::optional<double> nodata;
@@ -29,6 +30,10 @@ struct Params {
             "elevation model: GeoTIFF, SRTM .hgt, DTED, ESRI ASCII grid or ENVI; heights apply at "
             "the cells' centres")
         .required();
+    f("tiles", tiles)
+        .doc(
+            "further files of the same grid that fill a rectangle with `file`, side by side: they "
+            "are one model");
     f("voids", voids,
       {{"refuse", Voids::refuse}, {"fill_m", Voids::fill_m}, {"neighbours", Voids::neighbours}})
         .doc(
@@ -63,6 +68,9 @@ using Part = altiplan::HeightField::Part;
 /// An elevation model as in its file: posts on a grid along the axes of its coordinate system.
 /// Heights are read on demand (read_posts).
 struct Dem {
+  altiplan::Path file;
+  std::vector<Dem> tiles;  ///< of which it consists, where it has several files
+  Part place{};            ///< of a tile, in the model that it is part of
   int columns = 0;
   int rows = 0;
   std::array<double, 2> south_west;  ///< of the first post, in the system's own units

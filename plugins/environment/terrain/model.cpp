@@ -8,6 +8,7 @@
 #include "altiplan/error.hpp"
 #include "altiplan/world.hpp"
 #include "join.hpp"
+#include "mosaic.hpp"
 
 namespace terrain {
 namespace {
@@ -95,12 +96,14 @@ Box covered_by(const HeightField& field, const Layout& layout) {
 
 Model::Model(const Params& params, const altiplan::Site& site)
     : params_(params),
-      dem_(read_dem(params, is_bounded(site.volume) || !site.about.empty())),
+      dem_((params.tiles.empty() ? read_dem : read_mosaic)(
+          params, is_bounded(site.volume) || !site.about.empty())),
       layout_(layout_of(dem_, site, params)),
       field_(read(part_about(params_, dem_, layout_, site))),
       covered_(covered_by(field_, layout_)) {
   if (std::isinf(to_edge({0, 0, 0}))) {  // it is the whole
     dem_.numbers = {};
+    dem_.tiles.clear();
     dem_.dataset.reset();
     dem_.band = nullptr;
     joined_ = site.before != nullptr && join(field_, *site.before);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "dem.hpp"
+#include "mosaic.hpp"
 #include "place.hpp"
 
 namespace terrain {
@@ -210,6 +211,9 @@ void fill(const Params& params, Posts& posts) {
 }  // namespace
 
 Posts read_posts(const Params& params, const Dem& dem, const Part& part) {
+  if (!dem.tiles.empty()) {
+    return read_tiles(params, dem, part);
+  }
   Posts posts = read(params, dem, part);
   const std::size_t all = std::size_t(dem.columns) * std::size_t(dem.rows);
   const bool by_themselves = params.voids == Voids::fill_m && posts.voids < posts.heights.size();
