@@ -4,56 +4,15 @@ straight from a place of the mission to home, over models of ALTIPLAN_TEST_DATA 
 the ground must be among the refused."""
 import json
 import math
-import os
-import pathlib
 import random
-import struct
 import subprocess
 import sys
 import unittest
 
+from dem_model import METRES, MODELS, Model, item, write_ridge
 from plan_case import PlanCase
 
-SOURCES = sys.argv[2]
-MODELS = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", f"{SOURCES}/../shared/data"), "dem")
-METRES = 111320  # a degree
 COPTER, PLANE, PX4_COPTER, PX4_PLANE = (3, 2), (3, 1), (12, 2), (12, 1)
-
-
-class Model:
-    """Posts by row from the north, and the ground between four of them."""
-
-    def __init__(self, name):
-        self.file = str(MODELS / name)
-        self.crs = []
-        if name.endswith(".hgt"):
-            side = 1201
-            self.posts = struct.unpack(f">{side * side}h", pathlib.Path(self.file).read_bytes())
-            self.columns, self.step = side, 1 / 1200
-            self.west, self.north = -int(name[4:7]), int(name[1:3]) + 1
-        else:
-            words = pathlib.Path(self.file).read_text().split()
-            self.crs = ["--crs", "EPSG:4326"]
-            head = {words[n]: float(words[n + 1]) for n in range(0, 12, 2)}
-            self.posts = [float(word) for word in words[12:]]
-            self.columns, self.step = int(head["ncols"]), head["cellsize"]
-            self.west = head["xllcorner"] + self.step / 2
-            self.north = head["yllcorner"] + (head["nrows"] - 0.5) * self.step
-
-    def ground(self, lat, lon):
-        x, y = (lon - self.west) / self.step, (self.north - lat) / self.step
-        column, row = int(x), int(y)
-        u, v = x - column, y - row
-        at = row * self.columns + column
-        a, b = self.posts[at:at + 2]
-        c, d = self.posts[at + self.columns:at + self.columns + 2]
-        return min((a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v,
-                   *((a + u * (b - a) + v * (d - b), a + u * (d - c) + v * (c - a)) if u else (a + v * (c - a),)))
-
-
-def item(number, command, lat, lon, height, frame=3, params=(0, 0, 0, 0)):
-    return {"type": "SimpleItem", "command": command, "frame": frame, "doJumpId": number, "autoContinue": True,
-            "params": [*params, lat, lon, height]}
 
 
 class Returns(PlanCase):
@@ -63,21 +22,14 @@ class Returns(PlanCase):
 
     def setUp(self):
         super().setUp()
-        rows = []
-        for _ in range(60):
-            rows.append(" ".join("600" if 60 <= column < 64 else "400" for column in range(120)))
-        (self.folder / "ridge.asc").write_text(
-            f"ncols 120\nnrows 60\nxllcorner {self.LON - 0.02}\nyllcorner {self.LAT - 0.015}\ncellsize 0.0005\n"
-            "NODATA_value -9999\n" + "\n".join(rows) + "\n")
-        (self.folder / "ridge.prj").write_text(
-            'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
-            'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
+        write_ridge(self.folder, self.LAT, self.LON)
 
     def returns(self, vehicle, way, *options, parameters=None, rally=(), home=None, fence=None, code=None):
-        """`way`: (command, east of home, north, height above home)."""
-        items = [item(n + 1, command, self.LAT + north / METRES,
-                      self.LON + east / METRES / math.cos(math.radians(self.LAT)), height)
-                 for n, (command, east, north, height) in enumerate(way)]
+        """`way`: (command, east of home, north, height above home), or (178, airspeed)."""
+        items = [item(n + 1, 178, 0, 0, 0, params=(0, one[1], -1, 0)) if len(one) == 2 else
+                 item(n + 1, one[0], self.LAT + one[2] / METRES,
+                      self.LON + one[1] / METRES / math.cos(math.radians(self.LAT)), one[3])
+                 for n, one in enumerate(way)]
         self.write(items, firmwareType=vehicle[0], vehicleType=vehicle[1],
                    plannedHomePosition=home or [self.LAT, self.LON, 400])
         plan = json.loads((self.folder / "mission.plan").read_text())
@@ -198,6 +150,14 @@ class Returns(PlanCase):
         self.assertEqual(told["returns"]["refused"][0]["rule"], "ground")
         told = self.returns(PLANE, way, parameters={"RTL_ALTITUDE": 260}, code=0)
         self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
+
+    def test_an_aeroplane_that_flies_fast_for_a_while(self):
+        """Beside the ridge: it turns there at that speed, though the mission ends at another."""
+        slow = [(16, 400, -200, 150), (16, 400, 500, 150), (16, 0, 600, 150)]
+        fast = [slow[0], (178, 22), slow[1], (178, 12), slow[2]]
+        self.assertEqual(self.returns(PLANE, slow, parameters={"RTL_ALTITUDE": 150}, code=0)["verdict"], "pass")
+        told = self.returns(PLANE, fast, parameters={"RTL_ALTITUDE": 150}, code=1)
+        self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", "fail"), told)
 
     def test_an_aeroplane_with_a_rally_point(self):
         # Beyond the ridge its own height counts; at 70 m it circles clear of the ridge.

@@ -226,6 +226,21 @@ void add_battery(App& command, PlanCheck& plan, Option* returns) {
       ->needs(battery);
 }
 
+void add_glide(App& command, PlanCheck& plan, Option* returns) {
+  auto* glide =
+      command
+          .add_option("--glide RATIO", plan.glide,
+                      "with --returns: also judge whether an aeroplane whose engine stops "
+                      "glides to a site, so many metres on per metre of height in still air")
+          ->check(number_from(0.1, 100))
+          ->needs(returns);
+  command
+      .add_option("--ditch FILE", plan.ditch,
+                  "with --glide: points and areas where it may come down (GeoJSON, KML), in place "
+                  "of home and the mission's landing")
+      ->needs(glide);
+}
+
 /// A mission whose ending is not its format's is told by --scenario or --terrain.
 bool is_plan(const CheckArguments& arguments) {
   return arguments.result &&
@@ -289,6 +304,7 @@ void add_check(App& app, Action& action) {
   outputs->push_back(command.add_flag("--returns", arguments.mission.plan.returns,
                                       "also judge the failsafe return from every second of it"));
   add_battery(command, arguments.mission.plan, outputs->back());
+  add_glide(command, arguments.mission.plan, outputs->back());
   command
       .add_option("--fix-returns FILE", arguments.mission.plan.fixed_returns,
                   "with --returns: write the minimum return height with which all pass "

@@ -17,6 +17,7 @@
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
 #include "host/gate/declared_battery.hpp"
+#include "host/gate/glide.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/gate/return_cure.hpp"
 #include "host/gate/returns.hpp"
@@ -67,20 +68,38 @@ std::string figures_of(const PlanReport& report) {
          report.height_in_words() + ", " + time_in_words(report.time);
 }
 
+std::string colored(host::Verdict verdict) {
+  const Color color = verdict == host::Verdict::pass ? Color::good : Color::bad;
+  return painted(stdout, color, word_of(verdict));
+}
+
+void print_worst(const Finding& finding, const host::Mission& world) {
+  if (finding.at) {
+    std::printf("    worst at %s\n", host::place_in_words(*finding.at, world.request).c_str());
+  }
+}
+
+void print_glide(const host::GlideReport& glide, const PlanReport& report,
+                 const host::Mission& world) {
+  std::printf("glide %s: %s\n", colored(glide.verdict).c_str(),
+              host::printable(glide.in_words()).c_str());
+  for (const host::RefusedReturn& refused : glide.refused) {
+    std::printf("  %s\n", host::printable(in_glide_words(refused, report)).c_str());
+    print_worst(refused.finding, world);
+  }
+  for (const host::GlideStretch& reached : glide.reached) {
+    std::printf("  %s\n", host::printable(in_words(reached, report)).c_str());
+  }
+}
+
 void print(const PlanReport& report, const host::Mission& world) {
-  const auto colored = [](host::Verdict verdict) {
-    const Color color = verdict == host::Verdict::pass ? Color::good : Color::bad;
-    return painted(stdout, color, word_of(verdict));
-  };
   std::printf("%s: %s\n", colored(report.verdict()).c_str(), figures_of(report).c_str());
   if (report.energy) {
     std::printf("  energy: %s\n", report.energy->in_words().c_str());
   }
   for (const Finding& finding : report.findings) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
-    if (finding.at) {
-      std::printf("    worst at %s\n", host::place_in_words(*finding.at, world.request).c_str());
-    }
+    print_worst(finding, world);
     if (finding.cure) {
       std::printf("    cure: %s\n", cure_of(finding, report).c_str());
     }
@@ -94,10 +113,10 @@ void print(const PlanReport& report, const host::Mission& world) {
     }
     for (const host::RefusedReturn& refused : report.returns->refused) {
       std::printf("  %s\n", host::printable(in_words(refused, report)).c_str());
-      if (refused.finding.at) {
-        std::printf("    worst at %s\n",
-                    host::place_in_words(*refused.finding.at, world.request).c_str());
-      }
+      print_worst(refused.finding, world);
+    }
+    if (report.returns->glide) {
+      print_glide(*report.returns->glide, report, world);
     }
   }
   for (const std::string& note : report.notes) {
@@ -109,9 +128,9 @@ const char* key_of(host::Verdict verdict) {
   return verdict == host::Verdict::not_judged ? "not_judged" : word_of(verdict);
 }
 
-Json returns_json(const host::ReturnsReport& returns, const host::Mission& world) {
+Json refused_json(const std::vector<host::RefusedReturn>& stretches, const host::Mission& world) {
   Json refused = Json::array();
-  for (const host::RefusedReturn& stretch : returns.refused) {
+  for (const host::RefusedReturn& stretch : stretches) {
     const Finding& finding = stretch.finding;
     Json one{{"from_s", stretch.from_s},
              {"to_s", stretch.to_s},
@@ -133,20 +152,53 @@ Json returns_json(const host::ReturnsReport& returns, const host::Mission& world
     }
     refused.push_back(std::move(one));
   }
+  return refused;
+}
+
+Json to_json(const std::vector<host::Parameters::Used>& used) {
   Json parameters = Json::object();
-  for (const host::Parameters::Used& used : returns.parameters) {
-    parameters[used.name] = used.value;
+  for (const host::Parameters::Used& one : used) {
+    parameters[one.name] = one.value;
   }
+  return parameters;
+}
+
+Json glide_json(const host::GlideReport& glide, const PlanReport& report,
+                const host::Mission& world) {
+  Json reached = Json::array();
+  for (const host::GlideStretch& stretch : glide.reached) {
+    reached.push_back({{"from_s", stretch.from_s},
+                       {"to_s", stretch.to_s},
+                       {"items", {report.name_of(stretch.first), report.name_of(stretch.last)}},
+                       {"site", stretch.site},
+                       {"margin_m", stretch.margin_m}});
+  }
+  return Json{{"verdict", key_of(glide.verdict)},
+              {"ratio", glide.ratio},
+              {"wind_mps", glide.wind_mps},
+              {"margin_m", glide.margin_m() ? Json(*glide.margin_m()) : Json()},
+              {"reached", reached},
+              {"refused", refused_json(glide.refused, world)},
+              {"not_judged", glide.unjudged},
+              {"parameters", to_json(glide.parameters)}};
+}
+
+Json returns_json(const PlanReport& report, const host::Mission& world) {
+  const host::ReturnsReport& returns = *report.returns;
   const host::RefusedReturn* worst = returns.worst();
-  return Json{
-      {"verdict", key_of(returns.verdict)},
+  Json json{
+      {"verdict", key_of(returns.overall())},
       {"worst",
        worst == nullptr ? Json() : Json{{"time_s", worst->worst_s}, {"item", worst->finding.item}}},
       {"point_of_no_return_s",
        returns.point_of_no_return_s ? Json(*returns.point_of_no_return_s) : Json()},
-      {"refused", refused},
+      {"refused", refused_json(returns.refused, world)},
       {"not_judged", returns.unjudged},
-      {"parameters", parameters}};
+      {"parameters", to_json(returns.parameters)}};
+  if (returns.glide) {
+    json["glide"] = glide_json(*returns.glide, report, world);
+  }
+  return json;
 }
 
 /// [fastest, slowest]; null where nothing ends it.
@@ -192,12 +244,8 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
   for (const formats::Autopilot& autopilot : report.autopilots) {
     autopilots.push_back(autopilot.name());
   }
-  Json parameters = Json::object();
-  for (const host::Parameters::Used& used : report.parameters) {
-    parameters[used.name] = used.value;
-  }
   Json json{{"plan", report.file},         {"verdict", key_of(report.verdict())},
-            {"autopilots", autopilots},    {"parameters", parameters},
+            {"autopilots", autopilots},    {"parameters", to_json(report.parameters)},
             {"violations", all},           {"time_s", to_json(report.time)},
             {"parts", parts_json(report)}, {"metrics", host::to_json(report.measures)},
             {"notes", report.notes}};
@@ -209,7 +257,7 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
                       {"farthest_m", energy->farthest_m}};
   }
   if (report.returns) {
-    json["returns"] = returns_json(*report.returns, world);
+    json["returns"] = returns_json(report, world);
   }
   return json;
 }
@@ -228,6 +276,9 @@ host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
   basis.emplace_back("flown by", autopilots.empty() ? "not said: judged as drawn" : autopilots);
   if (plan.parameters) {
     add_file("parameters", *plan.parameters);
+  }
+  if (plan.ditch) {
+    add_file("sites of a glide", *plan.ditch);
   }
   if (plan.scenario) {
     add_file("scenario", *plan.scenario);
@@ -327,7 +378,7 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
 void fix_returns(const PlanCheck& plan, const PlanReport& report, const std::string& text,
                  const formats::MissionFile& mission, const host::Mission& world) {
   const std::string& file = *plan.fixed_returns;
-  if (report.passed()) {
+  if (report.findings.empty() && report.returns->verdict == host::Verdict::pass) {
     warn(file + ": not written: the returns pass as they are");
     return;
   }
@@ -380,7 +431,7 @@ void expect_outputs(const PlanCheck& plan, const std::vector<std::filesystem::pa
   others.insert(others.end(), plan.airspace.begin(), plan.airspace.end());
   const std::vector<std::string> models = models_of(plan);
   others.insert(others.end(), models.begin(), models.end());
-  for (const auto& file : {plan.scenario, plan.parameters}) {
+  for (const auto& file : {plan.scenario, plan.parameters, plan.ditch}) {
     others.insert(others.end(), file.value_or(plan.plan));
   }
   for (const std::filesystem::path& file : read) {
@@ -434,6 +485,9 @@ void expect_files(const PlanCheck& plan) {
   for (const std::string& file : plan.airspace) {
     expect("--airspace", file);
   }
+  if (plan.ditch) {
+    expect("--ditch", *plan.ditch);
+  }
 }
 
 Finding not_judged(const char* rule, std::string message) {
@@ -478,6 +532,12 @@ PlanCheck prepared(PlanCheck plan) {
     plan.gate.battery = plan.battery;
     plan.gate.battery->capacity_wh = *plan.battery_wh;
     plan.gate.battery->least_w = plan.battery.power_w;
+  }
+  if (plan.glide) {
+    plan.gate.glide = {*plan.glide, {}};
+    if (plan.ditch) {
+      plan.gate.glide->sites = host::read_glide_sites(*plan.ditch);
+    }
   }
   if (plan.parameters) {
     plan.gate.flight.parameters = host::read_parameters(*plan.parameters);
@@ -524,6 +584,11 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   if (plan.returns) {
     judged.report.returns = busy("judging the returns", [&] {
       return host::judge_returns(judged.mission, judged.world, plan.gate);
+    });
+  }
+  if (plan.gate.glide) {
+    judged.report.returns->glide = busy("judging the glides", [&] {
+      return host::judge_glide(judged.mission, judged.world, plan.gate);
     });
   }
   add_notes(judged.report, judged.world);

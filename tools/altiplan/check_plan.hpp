@@ -31,7 +31,9 @@ struct PlanCheck {
   std::optional<double> flown_s;  ///< for zones with hours; none: as long as the mission takes
   bool returns = false;           ///< failsafe returns are judged, too
   std::optional<double> battery_wh;
-  host::Battery battery;  ///< without the capacity
+  host::Battery battery;        ///< without the capacity
+  std::optional<double> glide;  ///< ratio of an aeroplane without its engine
+  std::optional<std::string> ditch;
   bool json = false;
   std::optional<std::string> certificate;
   std::optional<std::string> junit;

@@ -7,6 +7,9 @@
 #include "host/autopilot/walker.hpp"
 
 namespace altiplan::host {
+namespace {
+constexpr double kBesideGlide = 3;  // metres that its line is kept within
+}
 
 FailsafeReturns::FailsafeReturns(const formats::MissionFile& plan, formats::Autopilot autopilot,
                                  const World& world, const FlightOptions& options)
@@ -17,6 +20,24 @@ FailsafeReturns::~FailsafeReturns() = default;
 
 FlownMission FailsafeReturns::from(std::size_t command, const Whereabouts& place) const {
   return walker_->return_from(command, place);
+}
+
+Glide FailsafeReturns::glide_in(const Whereabouts& place, double ratio, double lowest_m) const {
+  return walker_->glide_in(place, ratio, lowest_m);
+}
+
+FlownMission FailsafeReturns::glide(std::size_t command, const Whereabouts& place,
+                                    const Glide& glide, const Eigen::Vector2d& to) const {
+  return walker_->glide(command, place, glide, to);
+}
+
+// It may be as fast as the mission has it fly anywhere.
+void Walker::be_anywhere(const Whereabouts& place) {
+  std::copy(std::begin(all_wing_speeds_), std::end(all_wing_speeds_), std::begin(wing_speed_));
+  is_winged_ = true;
+  hover_.reset();
+  wing_.emplace(flight_);
+  wing_->be_anywhere(place);
 }
 
 FlownMission Walker::return_from(std::size_t n, const Whereabouts& place) {
@@ -31,12 +52,8 @@ FlownMission Walker::return_from(std::size_t n, const Whereabouts& place) {
     give_up(n, "a failsafe return in a mission that sets another home is not judged");
   } else {
     remark_return_parameters(n);
-    is_winged_ = !autopilot_.is_copter();
-    hover_.reset();
-    wing_.reset();
-    if (is_winged_) {
-      wing_.emplace(flight_);
-      wing_->be_anywhere(place);
+    if (!autopilot_.is_copter()) {
+      be_anywhere(place);
     } else {
       hover_.emplace(flight_, place.at, place.low_m);
       hover_->high = place.high_m;
@@ -44,6 +61,32 @@ FlownMission Walker::return_from(std::size_t n, const Whereabouts& place) {
     return_home(n);
     check_fences();
   }
+  mission_.parameters = parameters_.used();
+  return std::move(mission_);
+}
+
+Glide Walker::glide_in(const Whereabouts& place, double ratio, double lowest_m) {
+  mission_ = FlownMission{};
+  be_anywhere(place);
+  forget_speeds();
+  return wing_->glide_in(place, ratio, lowest_m);
+}
+
+FlownMission Walker::glide(std::size_t n, const Whereabouts& place, const Glide& glide,
+                           const Eigen::Vector2d& to) {
+  mission_ = FlownMission{};
+  mission_.autopilot = autopilot_;
+  flight_.before = n;
+  flight_.begin(n, "the glide");
+  const double length = (to - place.at).norm();
+  const Flight::Level turned{glide.turned_m, place.low_m - glide.turn_loss_m, place.high_m};
+  const Flight::Level there{std::max(length, glide.turned_m + 1), 0, place.high_m};
+  flight_.add_fan(place, glide.room_m, to,
+                  {turned, {there.at_m, place.low_m - glide.lost_m(there.at_m), there.high}},
+                  kBesideGlide);
+  flight_.begin(n, "the circle over its site");
+  flight_.add_tower({to, glide.circle_m, 0, 0}, place.low_m - glide.lost_m(length), place.high_m,
+                    kBesideGlide);
   mission_.parameters = parameters_.used();
   return std::move(mission_);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "host/autopilot/flown_mission.hpp"
@@ -14,6 +15,21 @@ struct Whereabouts {
   double radius_m = 0;
   double low_m = 0;  ///< above sea level
   double high_m = 0;
+};
+
+/// How an aeroplane without its engine comes down over the ground, from anywhere in a place, at any
+/// heading, in wind from anywhere: it turns toward a site, and glides there straight.
+struct Glide {
+  double room_m = 0;       ///< beside the place, within which it turns
+  double turned_m = 0;     ///< from the middle of the place, where it has turned
+  double turn_loss_m = 0;  ///< height lost by then
+  double ratio = 0;        ///< metres on per metre of height, from then on; 0: the wind holds it
+  double circle_m = 0;     ///< radius in which it circles over its site
+
+  /// Height that is lost at the most to a site so far from the middle of the place.
+  double lost_m(double distance_m) const {
+    return ratio > 0 ? turn_loss_m + std::max(distance_m - turned_m, 0.0) / ratio : kInfinity;
+  }
 };
 
 class Walker;
@@ -32,6 +48,13 @@ class FailsafeReturns {
   /// The return from anywhere in a place at which that command is carried out, whatever the heading
   /// there: its strips contain every path, its time is that of the return alone.
   FlownMission from(std::size_t command, const Whereabouts& place) const;
+  /// Of an aeroplane that glides so far in still air (metres on per metre of height), at the speeds
+  /// that it may have; sites are not lower than `lowest_m`.
+  Glide glide_in(const Whereabouts& place, double ratio, double lowest_m) const;
+  /// The glide to a place above a site, and a circle there. It may sink less, and is as high as at
+  /// its beginning at the most.
+  FlownMission glide(std::size_t command, const Whereabouts& place, const Glide& glide,
+                     const Eigen::Vector2d& to) const;
 
  private:
   std::unique_ptr<Walker> walker_;

@@ -195,6 +195,8 @@ class Wing {
   /// `circle_m` it climbs on a circle of that radius first.
   void return_from(std::size_t command, const Whereabouts& place, const Destination& to,
                    double circle_m, double circle_at_home_m, double least_there);
+  /// As FailsafeReturns has it.
+  Glide glide_in(const Whereabouts& place, double ratio, double lowest_m) const;
   /// Down to the ground on a line.
   void land(std::size_t command, const Destination& to);
   /// Along a line from the ground to a height.
@@ -225,6 +227,8 @@ class Wing {
   double turn_distance(double v, const Leg& leg) const;
   /// Within which it turns toward any place from any heading.
   double room_to_turn(double v) const;
+  /// The path until a place is at most so much longer than its way, with that room to turn.
+  static double late_m(const Whereabouts& place, double beside, double fast);
   /// From anywhere between two heights, where it has turned after so many metres, and its path is
   /// at most `late_m` longer than its way.
   std::vector<Flight::Level> levels_of_return(double low, double high, const Destination& to,
@@ -256,7 +260,9 @@ class Wing {
   /// Of the circle that is flown where the radius is given, and how far about its centre it leads.
   double steady_radius(double radius, double z) const;
   double widest_radius(double radius, double z) const;
-  /// In metres a second over the ground, of the slowest (0) and the fastest (1).
+  /// In metres a second, of the slowest (0) and the fastest (1).
+  double true_airspeed(int speed, double z) const;
+  /// The same over the ground, in wind from ahead (0) and from behind (1).
   double true_speed(int speed, double z) const;
 
   Flight& flight_;

@@ -135,6 +135,11 @@ void Walker::change_speed(std::size_t n) {
     speeds[0] = speeds[1] = value == -2 ? cruise : value;
   }
   take_speed(counts, speeds, wing_speed_, cruise);
+  if (counts) {
+    const bool is_first = all_wing_speeds_[1] == 0;
+    all_wing_speeds_[0] = is_first ? speeds[0] : std::min(all_wing_speeds_[0], speeds[0]);
+    all_wing_speeds_[1] = std::max(all_wing_speeds_[1], speeds[1]);
+  }
   if (wing_) {
     set_wing_speed();
   }

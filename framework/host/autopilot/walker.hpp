@@ -29,6 +29,9 @@ class Walker {
   FlownMission fly();
   /// As FailsafeReturns has it, after the mission was flown.
   FlownMission return_from(std::size_t n, const Whereabouts& place);
+  Glide glide_in(const Whereabouts& place, double ratio, double lowest_m);
+  FlownMission glide(std::size_t n, const Whereabouts& place, const Glide& glide,
+                     const Eigen::Vector2d& to);
 
  private:
   bool is_px4() const { return autopilot_.is_px4(); }
@@ -45,6 +48,9 @@ class Walker {
   void remark_return_parameters(std::size_t n);
   /// The autopilot's own fence about home, where it is in force.
   void check_fences();
+
+  /// Puts wings anywhere in a place.
+  void be_anywhere(const Whereabouts& place);
 
   // Destinations.
 
@@ -171,6 +177,7 @@ class Walker {
   bool is_pending_ = false;  ///< a condition delays what follows
   double hover_speed_[2] = {0, 0};
   double wing_speed_[2] = {0, 0};
+  double all_wing_speeds_[2] = {0, 0};  ///< from the slowest to the fastest of the mission
   /// A way between two commands: how often it was flown, how long it took at last, and where it
   /// ended.
   struct Flown {

@@ -128,12 +128,14 @@ double Wing::high() const {
   return high;
 }
 
+double Wing::true_airspeed(int speed, double z) const {
+  return changing_mps_[speed] *
+         (flight_.autopilot().is_px4() ? 1 : air_ratio(z) * (speed == 0 ? kColdest : kWarmest));
+}
+
 double Wing::true_speed(int speed, double z) const {
   constexpr double kLeast = 1;  // against the wind
-  const double airspeed =
-      changing_mps_[speed] *
-      (flight_.autopilot().is_px4() ? 1 : air_ratio(z) * (speed == 0 ? kColdest : kWarmest));
-  return std::max(airspeed + (speed == 0 ? -1 : 1) * flight_.wind_mps, kLeast);
+  return std::max(true_airspeed(speed, z) + (speed == 0 ? -1 : 1) * flight_.wind_mps, kLeast);
 }
 
 double Wing::turn_distance(double v, const Leg& leg) const {
@@ -533,6 +535,10 @@ double Wing::room_to_turn(double v) const {
   return radius * (1 + kPi / 2) + kRolls * v;
 }
 
+double Wing::late_m(const Whereabouts& place, double beside, double fast) {
+  return 1.3 * beside + place.radius_m + fast;
+}
+
 std::vector<Flight::Level> Wing::levels_of_return(double low, double high, const Destination& to,
                                                   double turned_m, double late_m) const {
   const double fast = true_speed(1, std::max(high, to.high));
@@ -570,8 +576,7 @@ void Wing::return_from(std::size_t command, const Whereabouts& place, const Dest
     beside += widest_radius(circle_m, to.high);
   }
   const double turned_m = beside + place.radius_m;
-  // The path until a place is at most so much longer than its way.
-  const double late_m = 1.3 * beside + place.radius_m + fast;
+  const double late_m = Wing::late_m(place, beside, fast);
   std::vector<Flight::Level> levels;
   if (circles) {
     const double level_m = (kLevelled / (kSlow * climb_mps_) + 3 * lag_s_) * fast;
@@ -601,6 +606,26 @@ void Wing::return_from(std::size_t command, const Whereabouts& place, const Dest
   flight_.begin(command, "the circle at home");
   flight_.add_tower({to.at, widest_radius(circle_at_home_m, to.high), 0, 0},
                     std::min(is_near ? bottom : last_low, least_there), last_high, kBesideTrack);
+}
+
+// In a turn it sinks n² times as fast at most (n its load: the drag of its lift grows with n², the
+// rest not at all), n² - 1 being the square of its bank's tangent. Over a turn by a given angle
+// that adds at most the tangent times v²/g times the angle to its path.
+Glide Wing::glide_in(const Whereabouts& place, double ratio, double lowest_m) const {
+  constexpr double kTurn = 1.5 * kPi;  // radians: half a turn, and what it swings back
+  const double fast = true_speed(1, place.high_m);
+  const double slow = true_airspeed(0, std::min(lowest_m, place.low_m));
+  const double against = std::max(1 - flight_.wind_mps / slow, 0.0);
+  Glide glide;
+  glide.ratio = ratio * against;
+  glide.room_m = room_to_turn(fast);
+  glide.turned_m = glide.room_m + place.radius_m;
+  glide.circle_m = widest_radius(0, place.high_m);
+  const double tangent = max_turn_rate(fast) * fast / kGravity;
+  const double path_m =
+      glide.turned_m + late_m(place, glide.room_m, fast) + kTurn * tangent * fast * fast / kGravity;
+  glide.turn_loss_m = glide.ratio > 0 ? path_m / glide.ratio : kInfinity;
+  return glide;
 }
 
 void Wing::land(std::size_t command, const Destination& to) {

@@ -113,6 +113,24 @@ std::string figures_of(const Finding& finding) {
   return text;
 }
 
+std::string glide(const PlanReport& report) {
+  const auto& glide = report.returns->glide;
+  if (!glide) {
+    return "";
+  }
+  std::string html = std::string("<h2>Glide without engine: ") + word_of(glide->verdict) +
+                     "</h2>\n<p>" + with_digits(glide->ratio, 4) +
+                     " to 1 in still air, wind up to " + with_digits(glide->wind_mps, 4) +
+                     " m/s: " + xml_text(glide->in_words()) + "</p>\n<ul>\n";
+  for (const RefusedReturn& refused : glide->refused) {
+    html += "<li>" + xml_text(in_glide_words(refused, report)) + "</li>\n";
+  }
+  for (const GlideStretch& reached : glide->reached) {
+    html += "<li>" + xml_text(in_words(reached, report)) + "</li>\n";
+  }
+  return html + "</ul>\n" + parameters(glide->parameters);
+}
+
 std::string returns(const PlanReport& report) {
   if (!report.returns) {
     return "";
@@ -122,7 +140,7 @@ std::string returns(const PlanReport& report) {
   for (const RefusedReturn& refused : report.returns->refused) {
     html += "<li>" + xml_text(in_words(refused, report)) + "</li>\n";
   }
-  return html + "</ul>\n" + parameters(report.returns->parameters);
+  return html + "</ul>\n" + parameters(report.returns->parameters) + glide(report);
 }
 
 /// The numbers of the items, or of the points where the file numbers nothing.
@@ -165,7 +183,7 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
   request.world = std::make_shared<const World>(world.truth);
   const std::string verdict =
       word_of(report.verdict()) +
-      (report.returns ? std::string(", returns ") + word_of(report.returns->verdict) : "");
+      (report.returns ? std::string(", returns ") + word_of(report.returns->overall()) : "");
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>" +
                      verdict + ": " + xml_text(report.file) + "</title><style>" + kStyle +
                      "</style></head>\n<body>\n" + "<h1><span class=\"" +
@@ -229,19 +247,31 @@ std::string junit(const PlanReport& report) {
       add(joined(finding.items), [&](const Finding& other) { return &other == &finding; });
     }
   }
-  if (report.returns) {
+  const auto add_failsafe = [&](const char* name, const char* type, const auto& verdict,
+                                const auto& in_words) {
     std::string failures;
-    for (const RefusedReturn& refused : report.returns->refused) {
-      failures += "      <failure type=\"return\" message=\"" +
-                  xml_text(in_words(refused, report)) + "\"/>\n";
+    const auto fail = [&](const char* type_of_failure, const std::string& words) {
+      failures += std::string("      <failure type=\"") + type_of_failure + "\" message=\"" +
+                  xml_text(words) + "\"/>\n";
+    };
+    for (const RefusedReturn& refused : verdict.refused) {
+      fail(type, in_words(refused, report));
     }
-    for (const std::string& why : report.returns->unjudged) {
-      failures += "      <failure type=\"not_judged\" message=\"" + xml_text(why) + "\"/>\n";
+    for (const std::string& why : verdict.unjudged) {
+      fail("not_judged", why);
     }
     ++count;
     failed += failures.empty() ? 0 : 1;
-    cases += "    <testcase classname=\"" + xml_text(report.file) + "\" name=\"failsafe returns" +
+    cases += "    <testcase classname=\"" + xml_text(report.file) + "\" name=\"" + name +
              (failures.empty() ? "\"/>\n" : "\">\n" + failures + "    </testcase>\n");
+  };
+  if (report.returns) {
+    add_failsafe(
+        "failsafe returns", "return", *report.returns,
+        [](const RefusedReturn& refused, const PlanReport& of) { return in_words(refused, of); });
+  }
+  if (report.returns && report.returns->glide) {
+    add_failsafe("glide without engine", "glide", *report.returns->glide, in_glide_words);
   }
   const std::string counts =
       " tests=\"" + std::to_string(count) + "\" failures=\"" + std::to_string(failed) + "\"";

@@ -52,15 +52,44 @@ struct RefusedReturn {
   std::vector<Vec3> places;  ///< up to nine along it, at their greatest heights, local metres
 };
 
+/// A stretch of the flight from which an aeroplane without its engine glides to the same site.
+struct GlideStretch {
+  double from_s = 0;
+  double to_s = 0;
+  std::size_t first = 0;  ///< commands
+  std::size_t last = 0;
+  std::string site;
+  double margin_m = kInfinity;  ///< minimum height above the site
+};
+
+/// The verdict on glides from every second of the flight.
+struct GlideReport {
+  Verdict verdict = Verdict::pass;
+  double ratio = 0;                    ///< in still air
+  double wind_mps = 0;                 ///< the strongest that is judged
+  std::vector<GlideStretch> reached;   ///< by autopilot, and in the order of time
+  std::vector<RefusedReturn> refused;  ///< whence no site is reached
+  std::vector<std::string> unjudged;   ///< why there is no verdict
+  std::vector<Parameters::Used> parameters;
+
+  std::optional<double> margin_m() const;  ///< minimum of all that reach a site
+  /// "a site is reached from every second, at least 41.2 m above it", what is refused, or why it is
+  /// not judged.
+  std::string in_words() const;
+};
+
 /// The verdict on the failsafe returns of a mission.
 struct ReturnsReport {
   Verdict verdict = Verdict::pass;
+  std::optional<GlideReport> glide{};  ///< where they are judged
   std::vector<RefusedReturn> refused;  ///< by autopilot, and in the order of time
   std::vector<std::string> unjudged;   ///< why there is no verdict
   std::vector<Parameters::Used> parameters;
   /// The last second from which, on the slowest flight, the battery lasts for the way home, its
   /// reserve apart; none: no battery is known.
   std::optional<double> point_of_no_return_s{};
+  /// Of the returns and the glides.
+  Verdict overall() const;
   /// The worst of the refused; none: nothing is refused.
   const RefusedReturn* worst() const;
   /// "from every second, of ArduPilot copter", what is refused, or why it is not judged.
@@ -111,7 +140,7 @@ struct PlanReport {
   Verdict verdict() const;
   /// The mission, and its returns where they are judged.
   bool passed() const {
-    return findings.empty() && (!returns || returns->verdict == Verdict::pass);
+    return findings.empty() && (!returns || returns->overall() == Verdict::pass);
   }
   /// Of a command.
   std::string name_of(std::size_t command) const;
@@ -126,6 +155,11 @@ struct PlanReport {
 /// minimum and maximum heights.
 Polyline flown_line(const FlownMission& flown);
 
+/// "from 3 min 12 s (item 4 (waypoint)) to 3 min 40 s (item 5 (waypoint)): 'field', at least 41.2 m
+/// above it"
+std::string in_words(const GlideStretch& stretch, const PlanReport& report);
+/// "…, worst at 3 min 20 s: the glide to 'field': flies into the ground, …"
+std::string in_glide_words(const RefusedReturn& refused, const PlanReport& report);
 /// "from 3 min 12 s (item 4 (waypoint)) to 3 min 40 s (item 5 (waypoint)), worst at …: a return's
 /// …"
 std::string in_words(const RefusedReturn& refused, const PlanReport& report);
@@ -149,6 +183,19 @@ void put_above_ground(const std::string& file, formats::MissionFile& plan, doubl
 /// The world as it is from one time of the flight to another, in seconds.
 using WorldDuring = std::function<Mission(double, double)>;
 
+/// Ground on which an aeroplane may come down without its engine: a point, or points all over an
+/// area.
+struct GlideSite {
+  std::string name;
+  std::vector<formats::Point2> points;  ///< longitude, latitude
+};
+
+/// A glide without engine.
+struct GlideOptions {
+  double ratio = 0;              ///< metres on per metre of height, in still air
+  std::vector<GlideSite> sites;  ///< none: home, and where the mission lands
+};
+
 /// Who may fly it, as far as the user says.
 struct GateOptions {
   std::optional<formats::Firmware> firmware{};
@@ -156,6 +203,7 @@ struct GateOptions {
   FlightOptions flight{};
   double drawn_mps = 5;        ///< speed along drawn lines
   WorldDuring world_during{};  ///< none: it is the same all the time
+  std::optional<GlideOptions> glide{};
   std::optional<Battery> battery{};
   std::string battery_problem{};  ///< why that of a declared vehicle is not judged; "" if it is
   /// The route need not begin and end where the world's scenario says, nor do its task.

@@ -75,30 +75,76 @@ const RefusedReturn* ReturnsReport::worst() const {
   return found == refused.end() ? nullptr : &*found;
 }
 
-std::string ReturnsReport::in_words() const {
-  if (verdict == Verdict::pass) {
-    return "there is a way home from every second of the flight";
-  }
-  std::string words =
-      refused.empty() ? "" : counted(refused.size(), "part") + " of the flight without a way home";
-  for (const std::string& why : unjudged) {
+namespace {
+std::string time_of_flight(double seconds) {
+  const long whole = std::lround(seconds);
+  return (whole >= 60 ? std::to_string(whole / 60) + " min " : "") + std::to_string(whole % 60) +
+         " s";
+}
+
+/// Of a RefusedReturn or a GlideStretch.
+template <class Stretch>
+std::string stretch_in_words(const Stretch& stretch, const PlanReport& report) {
+  const auto place = [&](double seconds, std::size_t command) {
+    return time_of_flight(seconds) + " (" + report.name_of(command) + ")";
+  };
+  return "from " + place(stretch.from_s, stretch.first) + " to " +
+         place(stretch.to_s, stretch.last);
+}
+
+/// What is refused, or why it is not judged.
+template <class Report>
+std::string problems_in_words(const Report& report, const char* without) {
+  std::string words = report.refused.empty()
+                          ? ""
+                          : counted(report.refused.size(), "part") + " of the flight " + without;
+  for (const std::string& why : report.unjudged) {
     words += (words.empty() ? "" : "; not judged: ") + why;
   }
   return words;
 }
+}  // namespace
+
+std::string ReturnsReport::in_words() const {
+  return verdict == Verdict::pass ? "there is a way home from every second of the flight"
+                                  : problems_in_words(*this, "without a way home");
+}
 
 std::string in_words(const RefusedReturn& refused, const PlanReport& report) {
-  const auto time = [](double seconds) {
-    const long whole = std::lround(seconds);
-    return (whole >= 60 ? std::to_string(whole / 60) + " min " : "") + std::to_string(whole % 60) +
-           " s";
-  };
-  const auto place = [&](double seconds, std::size_t command) {
-    return time(seconds) + " (" + report.name_of(command) + ")";
-  };
-  return "from " + place(refused.from_s, refused.first) + " to " +
-         place(refused.to_s, refused.last) + ", worst at " + time(refused.worst_s) +
+  return stretch_in_words(refused, report) + ", worst at " + time_of_flight(refused.worst_s) +
          ": a return's " + refused.finding.violation.message;
+}
+
+Verdict ReturnsReport::overall() const {
+  const auto is = [&](Verdict word) {
+    return verdict == word || (glide && glide->verdict == word);
+  };
+  return is(Verdict::fail)         ? Verdict::fail
+         : is(Verdict::not_judged) ? Verdict::not_judged
+                                   : Verdict::pass;
+}
+
+std::optional<double> GlideReport::margin_m() const {
+  const auto least = std::min_element(
+      reached.begin(), reached.end(),
+      [](const GlideStretch& a, const GlideStretch& b) { return a.margin_m < b.margin_m; });
+  return least == reached.end() ? std::nullopt : std::optional(least->margin_m);
+}
+
+std::string GlideReport::in_words() const {
+  return verdict == Verdict::pass ? "a site is reached from every second of the flight, at least " +
+                                        with_decimals(margin_m().value_or(0), 1) + " m above it"
+                                  : problems_in_words(*this, "without a site");
+}
+
+std::string in_words(const GlideStretch& stretch, const PlanReport& report) {
+  return stretch_in_words(stretch, report) + ": '" + stretch.site + "', at least " +
+         with_decimals(stretch.margin_m, 1) + " m above it";
+}
+
+std::string in_glide_words(const RefusedReturn& refused, const PlanReport& report) {
+  return stretch_in_words(refused, report) + ", worst at " + time_of_flight(refused.worst_s) +
+         ": " + refused.finding.violation.message;
 }
 
 void expect_route(const std::string& file, const formats::MissionFile& plan) {

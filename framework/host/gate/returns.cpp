@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where every return from a place is valid, those from each part of it are: places begin as wide as
-// kCoarse, and are halved until they are valid, or as small as a second of flight.
 #include "host/gate/returns.hpp"
 
 #include <algorithm>
@@ -10,49 +8,16 @@
 
 #include "host/autopilot/failsafe_return.hpp"
 #include "host/base/words.hpp"
+#include "host/gate/flown_places.hpp"
 #include "host/gate/violated_zone.hpp"
 
 namespace altiplan::host {
 namespace {
 
-constexpr double kCoarse = 60;         // metres: radius
 constexpr double kFinest[] = {8, 16};  // metres: length, of a copter's and of an aeroplane's
 constexpr std::size_t kSampled = 40;   // places of a stretch, of which the worst is told
 constexpr std::size_t kPlaces = 9;     // of a stretch that are kept
 constexpr double kJoins = 3;           // seconds between refused places that are one stretch
-
-/// The smallest disc about the middle of the strips' box, with their reach.
-Whereabouts around(std::span<const Strip> strips) {
-  Eigen::Vector2d minimum(kInfinity, kInfinity);
-  Eigen::Vector2d maximum = -minimum;
-  double reach = 0;
-  Whereabouts place{{0, 0}, 0, kInfinity, -kInfinity};
-  for (const Strip& strip : strips) {
-    for (const Vec3& end : {strip.from, strip.to}) {
-      minimum = minimum.cwiseMin(end.head<2>());
-      maximum = maximum.cwiseMax(end.head<2>());
-    }
-    reach = std::max(reach, strip.reach_m);
-    place.low_m = std::min({place.low_m, strip.from.z(), strip.to.z()});
-    place.high_m = std::max({place.high_m, strip.from_high_m, strip.to_high_m});
-  }
-  place.at = (minimum + maximum) / 2;
-  place.radius_m = (maximum - minimum).norm() / 2 + reach;
-  return place;
-}
-
-std::array<Strip, 2> halves(const Strip& strip) {
-  Strip first = strip;
-  Strip second = strip;
-  first.to = second.from = (strip.from + strip.to) / 2;
-  first.to_high_m = second.from_high_m = (strip.from_high_m + strip.to_high_m) / 2;
-  return {first, second};
-}
-
-/// The middle of a time that has no end is its beginning.
-double middle(const TimeSpan& time) {
-  return std::isfinite(time.max_s) ? (time.min_s + time.max_s) / 2 : time.min_s;
-}
 
 class ReturnJudge {
  public:
@@ -76,23 +41,20 @@ class ReturnJudge {
         add_unjudged(name_of_command(plan_.commands[remark.command]) + ": " + remark.message);
       }
     }
-    double begin_s = 0;
-    double latest_s = 0;
     double last_s = 0;
-    for (const FlownPart& part : mission.parts) {
-      const double end_s = std::max(middle(part.time), begin_s);
+    for (const FlownPlaces& places : flown_places_of(mission, plan_, world_.frame())) {
+      const FlownPart& part = places.part();
       const bool lands_on_wings = part.ground == FlownPart::Ground::touched_along;
-      if (!part.is_return && !lands_on_wings && !part.strips.empty()) {
-        begin(part, begin_s, end_s);
-        latest_ = {latest_s, std::max(part.time.max_s, part.until_s)};
-        judge(std::span(part.strips));
-        last_s = end_s;
+      if (!part.is_return && !lands_on_wings) {
+        places_ = &places;
+        places.judge(
+            finest_, [&](const Whereabouts& place) { return is_valid(place); },
+            [&](const Whereabouts& place) { refuse(place); });
+        last_s = places.end_s();
       } else if (!part.is_return && lands_on_wings) {
         add_unjudged(name_of_command(plan_.commands[part.command]) +
                      ": a return from an aeroplane's take-off or landing");
       }
-      begin_s = end_s;
-      latest_s = part.time.max_s;
     }
     if (mission.parts.empty()) {
       add_unjudged("the mission is not flown");
@@ -119,75 +81,33 @@ class ReturnJudge {
     double needed_wh;  ///< by then and for the way home; 0: no battery is known
   };
 
-  /// Along a part time passes evenly.
-  void begin(const FlownPart& part, double begin_s, double end_s) {
-    part_ = &part;
-    begin_s_ = begin_s;
-    end_s_ = end_s;
-    from_ = part.strips.front().from.head<2>();
-    const formats::MissionCommand& command = plan_.commands[part.command];
-    to_ = part.strips.back().to.head<2>();
-    if (command.has_position()) {
-      const auto [x, y] = world_.frame().to_local(command.lon, command.lat);
-      to_ = {x, y};
-    }
-  }
-
-  std::array<double, 2> times_of(const Whereabouts& place) const {
-    const auto at = [&](double share) { return begin_s_ + share * (end_s_ - begin_s_); };
-    return {at(share_of(place, -finest_ / 2, 0)), at(share_of(place, finest_ / 2, 1))};
-  }
-
-  /// How much of the part's time has passed so far beyond the place.
-  double share_of(const Whereabouts& place, double beyond_m, double unknown) const {
-    const Eigen::Vector2d way = to_ - from_;
-    if (way.norm() < 1 || !part_->what.empty()) {
-      return unknown;
-    }
-    return std::clamp(((place.at - from_).dot(way) / way.norm() + beyond_m) / way.norm(), 0.0, 1.0);
-  }
-
   /// On the slowest flight, by the end of the place and for the way home from there.
   double needed_wh(const Whereabouts& place, const FlownMission& home) const {
     if (!battery_) {
       return 0;
     }
     // A part that is flown again counts as it is at its last end.
-    const double share = part_->until_s > 0 ? 1 : share_of(place, place.radius_m, 1);
-    const double spent_s = share < 1 ? latest_[0] + share * (latest_[1] - latest_[0]) : latest_[1];
+    const FlownPart& part = places_->part();
+    const double share = part.until_s > 0 ? 1 : places_->share_of(place, place.radius_m, 1);
+    const double latest_s = std::max(part.time.max_s, part.until_s);
+    const double begin_s = places_->latest_begin_s();
+    const double spent_s = share < 1 ? begin_s + share * (latest_s - begin_s) : latest_s;
     return (spent_s + home.time.max_s) * battery_->power_w / 3600;
   }
   bool is_too_much(double needed_wh) const {
     return battery_ && !(needed_wh <= battery_->usable_wh());
   }
 
-  void judge(std::span<const Strip> strips) {
-    const Whereabouts place = around(strips);
-    if (place.radius_m <= kCoarse && is_valid(place)) {
-      return;
-    }
-    if (strips.size() > 1) {
-      judge(strips.first(strips.size() / 2));
-      judge(strips.subspan(strips.size() / 2));
-      return;
-    }
-    if ((strips.front().to - strips.front().from).head<2>().norm() > finest_) {
-      for (const Strip& half : halves(strips.front())) {
-        judge(std::span(&half, 1));
-      }
-      return;
-    }
-    if (place.radius_m > kCoarse && is_valid(place)) {
-      return;
-    }
-    const auto [from_s, to_s] = times_of(place);
-    const double needed = needed_wh(place, returns_.from(part_->command, place));
-    refused_.push_back({from_s, to_s, part_->command, place, needed});
+  void refuse(const Whereabouts& place) {
+    const std::size_t command = places_->part().command;
+    const auto [from_s, to_s] = places_->times_of(place, finest_);
+    refused_.push_back(
+        {from_s, to_s, command, place, needed_wh(place, returns_.from(command, place))});
   }
 
   /// True as well where the return is not judged, which is noted.
   bool is_valid(const Whereabouts& place) {
-    FlownMission home = returns_.from(part_->command, place);
+    FlownMission home = returns_.from(places_->part().command, place);
     parameters_ = std::move(home.parameters);  // with those of all before it
     bool is_refused = is_too_much(needed_wh(place, home));
     bool is_unjudged = false;
@@ -354,16 +274,13 @@ class ReturnJudge {
   std::string prefix_;
   double finest_;
   ReturnsReport& report_;
-  const FlownPart* part_ = nullptr;
-  double begin_s_ = 0;
-  double end_s_ = 0;
-  std::array<double, 2> latest_{0, 0};  ///< of the part, on the slowest flight
-  Eigen::Vector2d from_{0, 0};
-  Eigen::Vector2d to_{0, 0};
+  const FlownPlaces* places_ = nullptr;  ///< that are judged
   std::vector<Refused> refused_;
   std::vector<Parameters::Used> parameters_;
   std::map<std::array<double, 7>, bool> known_;
 };
+
+}  // namespace
 
 void keep_each_once(std::vector<Parameters::Used>& parameters) {
   std::sort(parameters.begin(), parameters.end(),
@@ -372,7 +289,20 @@ void keep_each_once(std::vector<Parameters::Used>& parameters) {
                                [](const auto& a, const auto& b) { return a.name == b.name; }),
                    parameters.end());
 }
-}  // namespace
+FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& options,
+                                 const TimeSpan& flight) {
+  const double longest_s = 2 * flight.max_s + 600;
+  FailsafeWorld judged{world.request, ""};
+  judged.request.world = std::make_shared<const World>(world.truth);
+  if (options.world_during && std::isfinite(longest_s)) {
+    const Mission later = options.world_during(0, longest_s);
+    judged.request = later.request;
+    judged.request.world = std::make_shared<const World>(later.truth);
+  } else if (options.world_during) {
+    judged.problem = "zones with hours, and a flight without an end";
+  }
+  return judged;
+}
 
 ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& world,
                             const GateOptions& options) {
@@ -384,17 +314,11 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
         possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
     for (const formats::Autopilot& autopilot : autopilots) {
       const FailsafeReturns returns(plan, autopilot, world.truth, options.flight);
-      const double longest_s = 2 * returns.mission().time.max_s + 600;
-      Request request = world.request;
-      request.world = std::make_shared<const World>(world.truth);
-      if (options.world_during && std::isfinite(longest_s)) {
-        const Mission later = options.world_during(0, longest_s);
-        request = later.request;
-        request.world = std::make_shared<const World>(later.truth);
-      } else if (options.world_during) {
-        report.unjudged.emplace_back("zones with hours, and a flight without an end");
+      const FailsafeWorld judged = world_of_failsafes(world, options, returns.mission().time);
+      if (!judged.problem.empty()) {
+        report.unjudged.push_back(judged.problem);
       }
-      ReturnJudge(plan, returns, request, options.battery,
+      ReturnJudge(plan, returns, judged.request, options.battery,
                   autopilots.size() > 1 ? autopilot.name() + ": " : "", report)
           .judge();
     }

@@ -11,4 +11,15 @@ namespace altiplan::host {
 /// these are left out.
 ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& world,
                             const GateOptions& options);
+
+/// What failsafes of a flight are judged in: the world during the flight and as long again.
+struct FailsafeWorld {
+  Request request;
+  std::string problem;  ///< why that is not all, "" if it is
+};
+FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& options,
+                                 const TimeSpan& flight);
+
+/// Sorts parameters by their names.
+void keep_each_once(std::vector<Parameters::Used>& parameters);
 }  // namespace altiplan::host

@@ -134,6 +134,8 @@ bool read_surroundings(const Json& feature, const std::string& id, const std::st
   for (const Ring& line : lines) {
     if (type == "LineString" || type == "MultiLineString") {
       to.lines.push_back(line);
+    } else {
+      to.points.push_back({id, line.front()});
     }
     if (reach > 0) {
       for (Polygon& part : corridor_of(line, reach)) {

@@ -141,6 +141,7 @@ class KmlReader {
       add_points(node, line_);
     } else if (name == "Point") {
       add_points(node, points_);
+      mission_.points.push_back({Placemark(node).name, coordinates_of(node).front().lonlat});
     } else if (name == "LinearRing") {  // not of a Polygon: those are taken with it
       mission_.route_problem =
           "a LinearRing by itself is neither a route nor a zone: expected a "

@@ -28,6 +28,7 @@ struct ALTIPLAN_API GeoJson {
   /// What lies within the distance of a point or a line that a property gives, such as
   /// "Bufferzone": "5 km"; several polygons for each.
   std::vector<GeoFeature> surroundings;
+  std::vector<NamedPoint> points;   ///< by the id or name of their feature, else its number
   std::vector<Ring> lines;          ///< of LineStrings and MultiLineStrings
   std::size_t skipped = 0;          ///< features without an area: points, lines, no geometry
   std::vector<std::string> places;  ///< of these the points and lines: "mast at 25.05, 60.05"

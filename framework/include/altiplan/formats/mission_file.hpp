@@ -64,7 +64,8 @@ struct MissionFile {
   /// Where the vehicle may return to instead of home: of a .plan, and of QGC WPL 110 (MAV_CMD
   /// 5100).
   std::vector<MissionPoint> rally;
-  std::vector<std::string> flat;  ///< names of KML polygons without an area, which are skipped
+  std::vector<NamedPoint> points;  ///< of KML, by the names of their Placemarks
+  std::vector<std::string> flat;   ///< names of KML polygons without an area, which are skipped
   /// Skipped parts, one per line ("4 commands that fly nowhere skipped (178, 203)").
   std::vector<std::string> notes;
 };

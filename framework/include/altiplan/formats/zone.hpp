@@ -83,6 +83,12 @@ struct ALTIPLAN_API Zone {
   std::vector<std::array<double, 2>> active_between(double from, double until) const;
 };
 
+/// A point of a map.
+struct NamedPoint {
+  std::string name;
+  Point2 at{0, 0};  ///< longitude, latitude
+};
+
 /// All corners of the zones' outlines, and the centres of circles.
 ALTIPLAN_API std::vector<Point2> corners_of(const std::vector<Zone>& zones);
 }  // namespace altiplan::formats
