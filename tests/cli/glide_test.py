@@ -32,9 +32,9 @@ class Glide(PlanCase):
         return [self.LON + east / METRES / math.cos(math.radians(self.LAT)), self.LAT + north / METRES]
 
     def mission(self, way, vehicle=PLANE, parameters=None):
-        """`way`: (command, east of home, north, height above home)."""
-        items = [item(n + 1, command, *reversed(self.place(east, north)), height)
-                 for n, (command, east, north, height) in enumerate(way)]
+        """`way`: (command, east of home, north, height above home), or (178, airspeed)."""
+        items = [item(n + 1, 178, 0, 0, 0, params=(0, one[1], -1, 0)) if len(one) == 2 else
+                 item(n + 1, one[0], *reversed(self.place(*one[1:3])), one[3]) for n, one in enumerate(way)]
         self.write(items, firmwareType=vehicle[0], vehicleType=vehicle[1], plannedHomePosition=[self.LAT, self.LON, 400])
         (self.folder / "p.param").write_text("".join(
             f"{name},{value}\n" for name, value in {**self.HIGH, **(parameters or {})}.items()))
@@ -86,6 +86,14 @@ class Glide(PlanCase):
             margins.append(min(one["margin_m"] for one in told["returns"]["glide"]["reached"]))
         farther = math.hypot(300, 1100) - math.hypot(300, 700)
         self.assertAlmostEqual(margins[0] - margins[1], farther / 20, delta=3)
+
+    def test_what_another_speed_costs(self):
+        """From 9 m/s it dives to 22 m/s, or rises from there."""
+        way = [(16, -600, 0, 200), (16, -600, 500, 200)]
+        self.mission(way)
+        slow = self.glides(code=0)["glide"]["margin_m"]
+        self.mission([(178, 22), way[0], (178, 9), way[1]])
+        self.assertLess(self.glides(code=0)["glide"]["margin_m"], slow - (22 ** 2 - 9 ** 2) / 2 / 9.80665)
 
     def test_the_ridge_is_between(self):
         self.mission(self.BEYOND)

@@ -295,6 +295,7 @@ class Returns(PlanCase):
 class Referee(PlanCase):
     """Random missions over real models."""
 
+    SAMPLES = 19  # of a leg
     # The middle of what is flown over, and how far (degrees) it reaches.
     PLACES = [("N44W072.hgt", 44.26, -71.33, 0.05), ("srtmgl3_boulder_co.asc", 40.15, -105.5, 0.045)]
     KINDS = [(COPTER, {"RTL_ALT_M": 60}), (COPTER, {"RTL_ALT_M": 300}), (PLANE, {"RTL_ALTITUDE": 150}),
@@ -345,8 +346,8 @@ class Referee(PlanCase):
             if min(numbers) < 2 or max(numbers) > len(way) + 1:
                 continue
             a, b = (way[number - 2] for number in numbers)
-            for n in range(1, 20):
-                share = 0.1 + 0.8 * n / 20  # away from cut corners
+            for n in range(self.SAMPLES):
+                share = 0.1 + 0.8 * (n + 1) / (self.SAMPLES + 1)  # away from cut corners
                 at = [p + share * (q - p) for p, q in zip(a, b)]
                 if vehicle == PX4_PLANE:  # its ramp ends before the item
                     at[2] = max(at[2], b[2]) if b[2] < a[2] else at[2]

@@ -79,13 +79,14 @@ FlownMission Walker::glide(std::size_t n, const Whereabouts& place, const Glide&
   flight_.before = n;
   flight_.begin(n, "the glide");
   const double length = (to - place.at).norm();
-  const Flight::Level turned{glide.turned_m, place.low_m - glide.turn_loss_m, place.high_m};
-  const Flight::Level there{std::max(length, glide.turned_m + 1), 0, place.high_m};
+  const double high = place.high_m + glide.zoom_m;
+  const double there_m = std::max(length, glide.turned_m + 1);
   flight_.add_fan(place, glide.room_m, to,
-                  {turned, {there.at_m, place.low_m - glide.lost_m(there.at_m), there.high}},
+                  {{glide.turned_m, place.low_m - glide.turn_loss_m, high},
+                   {there_m, place.low_m - glide.lost_m(there_m), high}},
                   kBesideGlide);
   flight_.begin(n, "the circle over its site");
-  flight_.add_tower({to, glide.circle_m, 0, 0}, place.low_m - glide.lost_m(length), place.high_m,
+  flight_.add_tower({to, glide.circle_m, 0, 0}, place.low_m - glide.lost_m(length), high,
                     kBesideGlide);
   mission_.parameters = parameters_.used();
   return std::move(mission_);

@@ -25,6 +25,7 @@ struct Glide {
   double turn_loss_m = 0;  ///< height lost by then
   double ratio = 0;        ///< metres on per metre of height, from then on; 0: the wind holds it
   double circle_m = 0;     ///< radius in which it circles over its site
+  double zoom_m = 0;       ///< that it may rise while it slows down to the speed of its glide
 
   /// Height that is lost at the most to a site so far from the middle of the place.
   double lost_m(double distance_m) const {

@@ -624,7 +624,9 @@ Glide Wing::glide_in(const Whereabouts& place, double ratio, double lowest_m) co
   const double tangent = max_turn_rate(fast) * fast / kGravity;
   const double path_m =
       glide.turned_m + late_m(place, glide.room_m, fast) + kTurn * tangent * fast * fast / kGravity;
-  glide.turn_loss_m = glide.ratio > 0 ? path_m / glide.ratio : kInfinity;
+  const double fast_air = true_airspeed(1, place.high_m);
+  glide.zoom_m = (fast_air * fast_air - slow * slow) / (2 * kGravity);
+  glide.turn_loss_m = glide.ratio > 0 ? glide.zoom_m + path_m / glide.ratio : kInfinity;
   return glide;
 }
 
