@@ -3,7 +3,10 @@
 SOURCES."""
 import os
 import pathlib
+import random
+import shutil
 import struct
+import subprocess
 import sys
 
 SOURCES = sys.argv[2]
@@ -16,6 +19,7 @@ class Model:
 
     def __init__(self, name):
         self.file = str(MODELS / name)
+        self.name = pathlib.Path(name).stem
         self.crs = []
         if name.endswith(".hgt"):
             side = 1201
@@ -40,6 +44,39 @@ class Model:
         c, d = self.posts[at + self.columns:at + self.columns + 2]
         return min((a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v,
                    *((a + u * (b - a) + v * (d - b), a + u * (d - c) + v * (c - a)) if u else (a + v * (c - a),)))
+
+
+    def high_place(self):
+        """The middle and the reach (degrees) of a box of known ground about one of its highest posts."""
+        rows = len(self.posts) // self.columns
+        reach = min(0.05, 0.4 * self.step * min(rows, self.columns))
+        beside = int(reach / self.step) + 3
+        chance = random.Random(1)
+        places = [(chance.randrange(beside, rows - beside), chance.randrange(beside, self.columns - beside))
+                  for _ in range(1000)]
+        for row, column in sorted(places, key=lambda at: -self.posts[at[0] * self.columns + at[1]]):
+            box = [self.posts[n * self.columns + column - beside:n * self.columns + column + beside]
+                   for n in range(row - beside, row + beside, 4)]
+            if min(map(min, box)) > -9000:
+                return self.north - row * self.step, self.west + column * self.step, reach
+        raise ValueError(f"{self.file}: no box without voids")
+
+
+def all_models(folder):
+    """Those of ALTIPLAN_TEST_DATA, in degrees, with a place to fly over; of other systems only where GDAL's tools are."""
+    for file in sorted(MODELS.iterdir()):
+        if file.suffix in (".hgt", ".asc"):
+            model = Model(file.name)
+        elif file.suffix in (".tif", ".dt1") and shutil.which("gdalwarp"):
+            made = str(folder / file.stem)
+            subprocess.run(["gdalwarp", "-q", "-t_srs", "EPSG:4326", "-r", "bilinear", "-tr", *["0.00055555"] * 2,
+                            "-dstnodata", "-9999", "-ot", "Float32", str(file), made + ".tif"], check=True)
+            subprocess.run(["gdal_translate", "-q", "-of", "AAIGrid", "-co", "FORCE_CELLSIZE=YES", made + ".tif",
+                            made + ".asc"], check=True)
+            model = Model(made + ".asc")
+        else:
+            continue
+        yield model, model.high_place()
 
 
 def item(number, command, lat, lon, height, frame=3, params=(0, 0, 0, 0)):

@@ -40,9 +40,10 @@ class PlanCase(unittest.TestCase):
         return self.call("mission.plan", "--terrain", TERRAIN, *options, code=code)
 
     def call(self, *arguments, code):
+        """`code` None: that of either verdict."""
         run = subprocess.run([PROGRAM, "check", *arguments], cwd=self.folder, capture_output=True,
                              text=True, timeout=600)
-        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        self.assertIn(run.returncode, (0, 1) if code is None else (code,), run.stdout + run.stderr)
         return run.stdout, run.stderr
 
     def write(self, items, **keys):

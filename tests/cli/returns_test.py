@@ -2,14 +2,16 @@
 """returns_test.py PROGRAM SOURCES: `altiplan check MISSION --returns`. A referee of its own flies the plainest return,
 straight from a place of the mission to home, over models of ALTIPLAN_TEST_DATA that it reads itself: what it finds in
 the ground must be among the refused."""
+import itertools
 import json
 import math
+import os
 import random
 import subprocess
 import sys
 import unittest
 
-from dem_model import METRES, MODELS, Model, item, write_ridge
+from dem_model import METRES, MODELS, Model, all_models, item, write_ridge
 from plan_case import PlanCase
 
 COPTER, PLANE, PX4_COPTER, PX4_PLANE = (3, 2), (3, 1), (12, 2), (12, 1)
@@ -311,6 +313,19 @@ class Referee(PlanCase):
                 self.judge(model, place, vehicle, parameters, random.Random(f"{name} {kind}"), counts)
         self.assertGreater(counts["hits"], 300, counts)  # else it tells nothing
         self.assertGreater(counts["seconds"] - counts["refused"], 300, counts)
+
+    @unittest.skipUnless(MODELS.is_dir() and "ALTIPLAN_SECONDS" in os.environ, "of the night")
+    def test_many_seconds_over_all_models(self):
+        self.SAMPLES = 250
+        counts = {"hits": 0, "seconds": 0, "refused": 0}
+        models = list(all_models(self.folder))
+        for mission in itertools.count():
+            for model, place in models:
+                if counts["seconds"] >= int(os.environ["ALTIPLAN_SECONDS"]):
+                    self.assertGreater(counts["hits"], 0.1 * counts["seconds"], counts)
+                    return
+                vehicle, parameters = self.KINDS[mission % len(self.KINDS)]
+                self.judge(model, place, vehicle, parameters, random.Random(f"{model.name} {mission}"), counts)
 
     def judge(self, model, place, vehicle, parameters, chance, counts):
         lat, lon, far = place

@@ -236,11 +236,13 @@ class GlideJudge {
     const Target& target = *refused.best.target;
     const std::string to = "the glide to '" + target.site + "'";
     if (refused.best.margin_m < 0) {
+      const bool is_held = !std::isfinite(refused.best.margin_m);  // by the wind
       finding.violation.constraint = "glide";
-      finding.violation.value = refused.best.margin_m;
+      finding.violation.value = is_held ? 0 : refused.best.margin_m;
       finding.violation.unit = "m";
-      finding.violation.message =
-          "ends " + with_decimals(-refused.best.margin_m, 1) + " m too low, and no other better";
+      finding.violation.message = is_held ? "the wind may be as fast as it flies"
+                                          : "ends " + with_decimals(-refused.best.margin_m, 1) +
+                                                " m too low, and no other better";
       finding.at = Vec3(refused.place.at.x(), refused.place.at.y(), refused.place.low_m);
     } else {
       add_hit(refused, finding);
