@@ -246,14 +246,14 @@ class Referee(PlanCase):
             return *at, model.ground(*at)
 
         home = min((somewhere() for _ in range(4)), key=lambda at: at[2])
-        sites = {f"s{n}": min((somewhere() for _ in range(3)), key=lambda at: at[2]) for n in range(6)}
+        sites = {f"s{n}": min((somewhere() for _ in range(3)), key=lambda at: at[2]) for n in range(2)}
         (self.folder / "d.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [
             {"type": "Feature", "properties": {"name": name}, "geometry": {"type": "Point", "coordinates": [at[1], at[0]]}}
             for name, at in sites.items()]}))
-        way = [(*at[:2], at[2] + chance.uniform(150, 700)) for at in (somewhere() for _ in range(5))]
+        way = [(*at[:2], at[2] + chance.uniform(100, 500)) for at in (somewhere() for _ in range(5))]
         self.write([item(n + 1, 16, *point, frame=0) for n, point in enumerate(way)], firmwareType=3, vehicleType=1,
                    plannedHomePosition=home)
-        ratio, wind = chance.choice((8, 12, 18, 25)), chance.choice((0, 2, 4))
+        ratio, wind = chance.choice((8, 12, 18)), chance.choice((0, 2, 4))
         out, _ = self.call("mission.plan", "--terrain", model.file, *model.crs, "--returns", "--json", "--glide", str(ratio),
                            "--ditch", "d.geojson", "--wind", str(wind), code=None)
         told = json.loads(out)
@@ -264,9 +264,12 @@ class Referee(PlanCase):
             if part["what"] or len(numbers) != 2:
                 continue
             a, b = (way[number - 1] for number in numbers)
-            for n in range(20):
-                share = chance.uniform(0.1, 0.9)  # away from cut corners
-                second = middle[index - 1] + share * (middle[index] - middle[index - 1])
+            begin, end = middle[index - 1], middle[index]
+            # Anywhere, and where sites are about to be out of reach; away from cut corners.
+            edges = [(edge - begin) / (end - begin) for one in glide["refused"]
+                     for edge in (one["from_s"] - 4, one["from_s"] - 9, one["to_s"] + 4, one["to_s"] + 9)]
+            for share in [chance.uniform(0.1, 0.9) for _ in range(12)] + [one for one in edges if 0.1 < one < 0.9]:
+                second = begin + share * (end - begin)
                 if any(one["from_s"] - 3 <= second <= one["to_s"] + 3 for one in glide["refused"]):
                     counts["refused"] += 1
                     continue
