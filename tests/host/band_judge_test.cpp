@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
 #include <random>
+#include <tuple>
 
 #include "support/support.hpp"
 
@@ -91,6 +96,53 @@ TEST(BandJudge, JudgesAPartAsItsStrips) {
   }
   EXPECT_GT(hit, kParts / 10);
   EXPECT_GT(valid, kParts / 10);
+}
+
+/// Ground at sea level with a hill across x = -500.
+class Hill final : public Environment, public Ground {
+ public:
+  explicit Hill(double top) : top_(top) {}
+
+ private:
+  double height(double x) const { return std::max(0.0, top_ - std::abs(x + 500)); }
+  Box do_bounds() const override { return {Vec3::Constant(-1e4), {1e4, 1e4, top_}}; }
+  double do_clearance(const Vec3& p) const override { return p.z() - height(p.x()); }
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double) const override { return height(x); }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
+    double least = kInfinity;
+    for (int n = 0; n <= 1000; ++n) {
+      const Vec3 p = a + n / 1000.0 * (b - a);
+      least = std::min(least, p.z() - height(p.x()));
+    }
+    return least;
+  }
+  double top_;
+};
+
+// A landing from 100 m above the runway, 1000 m before it, is 50 m above that where the hill is.
+TEST(BandJudge, ALandingKeepsOffTheGroundByHalfOfItsHeight) {
+  FlownPart landing;
+  landing.ground = FlownPart::Ground::touched_along;
+  landing.foot_m = 0;
+  landing.strips = {{{-1000, 0, 100}, {0, 0, 0}, 105, 0, 8}};
+  for (const auto& [top, limit, rule] :
+       {std::tuple(20.0, 30.0, ""), std::tuple(30.0, 30.0, "ground_clearance"),
+        std::tuple(30.0, 10.0, ""), std::tuple(45.0, 10.0, "ground_clearance"),
+        std::tuple(30.0, 0.0, ""), std::tuple(60.0, 0.0, "ground")}) {
+    Request request = altiplan::testing::request_in(
+        altiplan::testing::world_of(std::make_shared<Hill>(top)), {0, 0, 0}, {1, 0, 0},
+        {Vec3::Constant(-1e4), Vec3::Constant(1e4)});
+    request.limits.min_ground_clearance = limit;
+    const BandJudge judge(request);
+    const auto found = judge.violations(landing);
+    ASSERT_EQ(found.empty() ? "" : found.front().violation.constraint, rule)
+        << top << " m, at least " << limit;
+    EXPECT_EQ(judge.is_valid(landing), found.empty());
+    if (!found.empty()) {
+      EXPECT_NEAR(found.front().at.x(), -500, 15);
+    }
+  }
 }
 
 TEST(BandJudge, APartOfNothingIsValid) {

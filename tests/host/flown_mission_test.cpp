@@ -461,5 +461,25 @@ TEST(FlownMission, RoundsOfAJumpTakeAsLongEach) {
     EXPECT_EQ(strips(all), strips(some));
   }
 }
+
+// It sinks 2.5 m/s at some 14 m/s over the ground: its slope leads to a point some 5 m above the
+// ground, from which a flare of 0.25 m/s takes 20 s.
+TEST(FlownMission, AnAeroplanesLandingLeadsToItsFlare) {
+  const std::vector<MissionCommand> commands = {command(16, -1500, 0, 120),
+                                                command(16, -700, 0, 120), command(21, 0, 0, 0)};
+  const FlownMission flown = fly(commands, kPlane);
+  for (const double before : {700.0, 600.0, 400.0, 250.0}) {
+    EXPECT_LE(outside(flown, -before, 0, 5 + 115 * (before - 250) / 450), 0) << before;
+    EXPECT_LE(outside(flown, -before, 0, 120 * before / 700), 0) << before;  // a quick flare
+  }
+  EXPECT_LE(outside(flown, -120, 0, 2.5), 0);
+  EXPECT_GT(outside(flown, -600, 0, 60), 10);
+  EXPECT_EQ(part(flown, "the landing").foot_m, kHome);
+  EXPECT_LE(outside(flown, 190, 0, 1), 0);
+  EXPECT_EQ(part(flown, "the roll-out").foot_m, kInfinity);
+  FlightOptions quick;
+  quick.parameters = {{"LAND_FLARE_SEC", {0}}, {"LAND_FLARE_ALT", {1}}, {"TECS_LAND_SINK", {1}}};
+  EXPECT_GT(outside(fly(commands, kPlane, quick), -250, 0, 5), 10);
+}
 }  // namespace
 }  // namespace altiplan::host::flown_mission_test

@@ -197,7 +197,7 @@ class Wing {
                    double circle_m, double circle_at_home_m, double least_there);
   /// As FailsafeReturns has it.
   Glide glide_in(const Whereabouts& place, double ratio, double lowest_m) const;
-  /// Down to the ground on a line.
+  /// Down to the ground on a slope, and along the ground.
   void land(std::size_t command, const Destination& to);
   /// Along a line from the ground to a height.
   void take_off(std::size_t command, const Eigen::Vector2d& from, double heading, double z,
@@ -254,6 +254,14 @@ class Wing {
   void seek_heights(Member& member, double sought, double highest, double seconds,
                     bool turns) const;
   void circle_until_high(std::size_t command, const Leg& leg);
+  /// The lowest slope of a landing: from the height at its beginning to a point so far before its
+  /// end, and so high above it.
+  struct Aim {
+    double before_m = 0;
+    double height_m = 0;
+  };
+  Aim lowest_aim(double sinks_m, double length, double z) const;
+  void roll_out(std::size_t command, const Vec3& touch, const Eigen::Vector2d& course);
   /// How far it is below and above its height above the ground, on a circle.
   std::array<double, 2> lags_on_circle(const Destination& centre, double radius, double v) const;
   double max_turn_rate(double v) const;

@@ -43,6 +43,7 @@ struct FlownPart {
   std::size_t before = 0;   ///< and of the one whose position it is flown from
   std::string what;         ///< "the climb after take-off"; "" for the way between two items
   Ground ground = Ground::kept_off;
+  double foot_m = kInfinity;  ///< height above sea level where a slanted end is on the ground
   std::vector<Strip> strips;
   double begin_s = 0;      ///< earliest, from the beginning of the flight
   TimeSpan time;           ///< from the beginning of the flight to the end of the part

@@ -68,6 +68,9 @@ const Row kRows[] = {
     {"TECS_SINK_MAX", {kNone, 5, kNone, kNone}},
     {"TECS_HDEM_TCONST", {kNone, 3, kNone, kNone}},
     {"ALT_SLOPE_MIN", {kNone, 15, kNone, kNone}, "GLIDE_SLOPE_MIN", 1},
+    {"LAND_FLARE_ALT", {kNone, 3, kNone, kNone}},
+    {"LAND_FLARE_SEC", {kNone, 2, kNone, kNone}},
+    {"TECS_LAND_SINK", {kNone, 0.25, kNone, kNone}},
     {"ROLL_LIMIT_DEG", {kNone, 45, kNone, kNone}, "LIM_ROLL_CD", 0.01},
     {"PTCH_LIM_MAX_DEG", {kNone, 20, kNone, kNone}, "LIM_PITCH_MAX", kCm},
     {"RTL_ALTITUDE", {kNone, 100, kNone, kNone}, "ALT_HOLD_RTL", kCm},
@@ -115,7 +118,7 @@ constexpr std::string_view kMayBeZero[] = {
     "ALT_SLOPE_MIN",   "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
     "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
     "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
-    "MIS_OPTIONS",     "DISARM_DELAY"};
+    "MIS_OPTIONS",     "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC"};
 
 void expect_possible(const Row& row, const ParameterValue& given) {
   const double value = given.value;

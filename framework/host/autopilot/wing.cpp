@@ -4,7 +4,6 @@
 // flown one by one with the autopilot's law of guidance (Park, Deyst and How 2004, equation 1).
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "host/autopilot/flight.hpp"
 
@@ -20,7 +19,6 @@ constexpr double kReach = 8;             // metres: more than half of a step of 
 constexpr int kFractions = 5;            // of the distance at which a turn begins
 constexpr double kPx4HeightRadius = 10;  // NAV_FW_ALT_RAD
 constexpr double kPx4LevelBefore = 80;   // metres before an item at which its ramp has ended
-constexpr double kRunOut = 200;          // metres beyond a landing's point
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -31,7 +29,6 @@ Eigen::Vector2d unit(double heading) { return {std::cos(heading), std::sin(headi
 double air_ratio(double z) {
   return std::pow(1 - 2.25577e-5 * std::clamp(z, -500.0, 9000.0), -2.128);
 }
-constexpr double kLevelsOff = 15;    // metres above a take-off's height
 constexpr double kAboveGround = 10;  // metres that a height above the ground is kept within
 constexpr double kWeakTurn = 0.62;   // of the turn that is sought: it sinks instead
 constexpr double kSwings = 1.4;      // how far it swings out when it joins a circle
@@ -628,78 +625,5 @@ Glide Wing::glide_in(const Whereabouts& place, double ratio, double lowest_m) co
   glide.zoom_m = (fast_air * fast_air - slow * slow) / (2 * kGravity);
   glide.turn_loss_m = glide.ratio > 0 ? glide.zoom_m + path_m / glide.ratio : kInfinity;
   return glide;
-}
-
-void Wing::land(std::size_t command, const Destination& to) {
-  flight_.begin(command, "the landing").ground = FlownPart::Ground::touched_along;
-  const Eigen::Vector2d begin = from_.at;
-  const double begin_low = low();
-  const double begin_high = high();
-  // Its turn onto the slope, which has no least height.
-  Leg slope;
-  slope.to = to;
-  if (has_track_) {
-    cut_corner(slope);
-  }
-  does_arrive_ = true;
-  const double slope_min_m = std::exchange(slope_min_m_, 0);
-  std::vector<std::vector<Passed>> passed(members_.size());
-  for (std::size_t n = 0; n < members_.size(); ++n) {
-    fly(members_[n], slope, passed[n]);
-  }
-  fill_between(passed);
-  slope_min_m_ = slope_min_m;
-  if (!does_arrive_) {
-    flight_.remark(Remark::Weight::not_judged, "not_judged", command,
-                   "how the aeroplane gets to its landing is not judged: it circles the point");
-  }
-  const double foot = std::min(to.low, flight_.ground(to.at));
-  const Vec3 touch(to.at.x(), to.at.y(), std::max(to.low, foot));
-  flight_.add_strip({begin.x(), begin.y(), begin_low}, begin_high, touch, touch.z(), kReach);
-  const double length = (to.at - begin).norm();
-  flight_.take({length / (speed_mps[1] + flight_.wind_mps),
-                length / std::max(speed_mps[0] - flight_.wind_mps, 1.0) * 1.5 + 30});
-  // It rolls out on the ground, or a little above.
-  Vec3 before = touch;
-  for (int step = 1; step <= 10; ++step) {
-    const Eigen::Vector2d beyond = to.at + kRunOut * step / 10 * (to.at - begin).normalized();
-    const Vec3 here(beyond.x(), beyond.y(), flight_.ground(beyond));
-    flight_.add_strip(before, before.z() + 2, here, here.z() + 2, kReach);
-    before = here;
-  }
-}
-
-void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double heading, double z,
-                    double spread) {
-  FlownPart& part = flight_.begin(command, "the climb after take-off");
-  part.ground = FlownPart::Ground::touched_along;
-  const double foot = flight_.ground(from);
-  const double height = std::max(z - foot, 1.0);
-  const bool is_px4 = flight_.autopilot().is_px4();
-  const double against = speed_mps[0] / std::max(speed_mps[0] - flight_.wind_mps, 1.0);
-  const double with = speed_mps[1] / (speed_mps[1] + flight_.wind_mps);
-  const double steep =
-      against * (is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0]
-                        : std::tan(radians(flight_.parameter("PTCH_LIM_MAX_DEG"))));
-  const double shallow = with * (is_px4 ? 2 / speed_mps[1] : std::tan(radians(4)));
-  constexpr int kRays = 5;
-  for (int ray = 0; ray < kRays; ++ray) {
-    const double course = heading + spread * (2.0 * ray / (kRays - 1) - 1);
-    const Vec3 near(from.x() + height / steep * std::cos(course),
-                    from.y() + height / steep * std::sin(course), foot + shallow * height / steep);
-    const Vec3 far(from.x() + height / shallow * std::cos(course),
-                   from.y() + height / shallow * std::sin(course), z);
-    flight_.add_strip({from.x(), from.y(), foot}, foot, near, z, kReach);
-    flight_.add_strip(near, is_px4 ? z : z + kLevelsOff, far, is_px4 ? z : z + kLevelsOff, kReach);
-  }
-  flight_.take({height / steep / (speed_mps[1] + flight_.wind_mps),
-                height / shallow / std::max(speed_mps[0] - flight_.wind_mps, 1.0) + 10});
-  start_on(from + height / steep * unit(heading), from + height / shallow * unit(heading), z);
-  if (!is_px4) {  // it levels off late, and fast
-    for (Member& member : members_) {
-      member.high = z + kLevelsOff;
-    }
-    changing_mps_[1] *= 1.25;
-  }
 }
 }  // namespace altiplan::host

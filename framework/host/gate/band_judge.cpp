@@ -12,7 +12,6 @@ namespace altiplan::host {
 namespace {
 
 constexpr double kRise = 8;           // metres between lines of one strip, one above the other
-constexpr double kTouch = 1;          // metres: where a slanted landing ends
 constexpr int kLookedAt = 4;          // lines
 constexpr std::size_t kEnough = 500;  // lines that are not valid
 constexpr double kOnLine = 5;         // metres beside a line that need no mention
@@ -217,7 +216,7 @@ void BandJudge::judge_sky(const FlownPart& part, std::vector<Worst>& worst) cons
   });
 }
 
-void BandJudge::judge_end(const Line& line, FlownPart::Ground ground,
+void BandJudge::judge_end(const Line& line, const FlownPart& part,
                           std::vector<Worst>& worst) const {
   if (is_too_high(line.leg)) {
     for (Violation& violation : leg_violations(std::nullopt, line.leg, within(0).ground, 0)) {
@@ -226,14 +225,23 @@ void BandJudge::judge_end(const Line& line, FlownPart::Ground ground,
       }
     }
   }
-  if (ground == FlownPart::Ground::touched_along && is_below_ground(line.leg)) {
-    Violation violation;
-    violation.constraint = "ground";
-    violation.value = request_.world->ground_gap(line.leg.from, line.leg.to);
-    violation.unit = "m";
-    violation.message = "goes through the ground, or beyond what is known of it";
-    keep_worst(worst, std::move(violation), line);
+  if (!is_too_low(line.leg, part)) {
+    return;
   }
+  Violation violation;
+  violation.unit = "m";
+  violation.value = request_.world->ground_gap(line.leg.from, line.leg.to);
+  if (!(violation.value >= -SlantedEnd::kTouch)) {
+    violation.constraint = "ground";
+    violation.message = "goes through the ground, or beyond what is known of it";
+  } else {
+    const double margin = end_of(part).margin(*request_.world, line.leg.from, line.leg.to);
+    violation.constraint = "ground_clearance";
+    violation.limit = violation.value - margin;
+    violation.message = "keeps off the ground by less than half of its height above the runway: " +
+                        with_decimals(-margin, 1) + " m too low";
+  }
+  keep_worst(worst, std::move(violation), line);
 }
 
 bool BandJudge::is_too_high(const Leg& leg) const {
@@ -246,8 +254,13 @@ bool BandJudge::is_too_high(const Leg& leg) const {
                      });
 }
 
-bool BandJudge::is_below_ground(const Leg& leg) const {
-  return request_.world->has_ground() && !(request_.world->ground_gap(leg.from, leg.to) >= -kTouch);
+SlantedEnd BandJudge::end_of(const FlownPart& part) const {
+  return {part.foot_m, request_.limits.min_ground_clearance.value_or(0)};
+}
+
+bool BandJudge::is_too_low(const Leg& leg, const FlownPart& part) const {
+  return part.ground == FlownPart::Ground::touched_along && request_.world->has_ground() &&
+         !(end_of(part).margin(*request_.world, leg.from, leg.to) >= -SlantedEnd::kTouch);
 }
 
 std::vector<BandJudge::Line> BandJudge::telling(const std::vector<Line>& lines) const {
@@ -268,8 +281,11 @@ std::vector<BandJudge::Line> BandJudge::telling(const std::vector<Line>& lines) 
   return chosen;
 }
 
-Vec3 BandJudge::place_of(const Worst& worst) const {
+Vec3 BandJudge::place_of(const Worst& worst, const FlownPart& part) const {
   const auto& [violation, line] = worst;
+  if (is_too_low(line.leg, part) && violation.constraint.starts_with("ground")) {
+    return end_of(part).worst(*request_.world, line.leg.from, line.leg.to);
+  }
   const Layer* layer = request_.world->find(violation.layer);
   if (violation.constraint == "clearance" && layer != nullptr) {
     const double share =
@@ -293,7 +309,7 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
     }
     for (const Line& line : lines) {
       if (part.ground != FlownPart::Ground::kept_off) {
-        judge_end(line, part.ground, worst);
+        judge_end(line, part, worst);
       } else if (const auto near = too_near_ground(line)) {
         invalid.push_back(*near);
       }
@@ -307,7 +323,7 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
   }
   std::vector<Found> found;
   for (Worst& one : worst) {
-    const Vec3 at = place_of(one);
+    const Vec3 at = place_of(one, part);
     if (one.violation.constraint == "clearance" && one.line.reach_m > kOnLine) {
       one.violation.message += ", " + with_decimals(one.line.reach_m, 1) +
                                " m of them for how far beside its line it may fly";
@@ -326,10 +342,8 @@ bool BandJudge::is_valid(const FlownPart& part) const {
     return false;
   }
   const auto is_line_valid = [&](const Line& line) {
-    return part.ground == Ground::kept_off
-               ? !too_near_ground(line)
-               : !is_too_high(line.leg) &&
-                     !(part.ground == Ground::touched_along && is_below_ground(line.leg));
+    return part.ground == Ground::kept_off ? !too_near_ground(line)
+                                           : !is_too_high(line.leg) && !is_too_low(line.leg, part);
   };
   return std::all_of(part.strips.begin(), part.strips.end(), [&](const Strip& strip) {
     const std::vector<Line> lines = ground_lines_of(strip);

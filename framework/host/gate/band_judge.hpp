@@ -9,6 +9,7 @@
 
 #include "altiplan/check.hpp"
 #include "host/autopilot/flown_mission.hpp"
+#include "host/judge/slanted_end.hpp"
 
 namespace altiplan::host {
 
@@ -31,7 +32,7 @@ class BandJudge {
     Vec3 at;
   };
   /// The worst of each rule and layer. Where the vehicle takes off or lands, its height and the
-  /// ground do not count, but that a slanted path is not below the ground.
+  /// ground do not count, but that a slanted path keeps off the ground as a SlantedEnd does.
   std::vector<Found> violations(const FlownPart& part) const;
   /// True if there is none; quicker.
   bool is_valid(const FlownPart& part) const;
@@ -69,13 +70,14 @@ class BandJudge {
   /// Of lines that are not valid those that tell how bad it is, the lowest, the highest and some
   /// between: to find out takes long.
   std::vector<Line> telling(const std::vector<Line>& lines) const;
-  void judge_end(const Line& line, FlownPart::Ground ground, std::vector<Worst>& worst) const;
+  void judge_end(const Line& line, const FlownPart& part, std::vector<Worst>& worst) const;
   /// True if a leg is above a maximum height.
   bool is_too_high(const Leg& leg) const;
-  bool is_below_ground(const Leg& leg) const;
+  SlantedEnd end_of(const FlownPart& part) const;
+  bool is_too_low(const Leg& leg, const FlownPart& part) const;
   /// The sky's violations, of the first lines that have one: to find out how bad one is takes long.
   void judge_sky(const FlownPart& part, std::vector<Worst>& worst) const;
-  Vec3 place_of(const Worst& worst) const;
+  Vec3 place_of(const Worst& worst, const FlownPart& part) const;
 
   Request request_;
   World sky_;     ///< its layers without ground
