@@ -133,7 +133,8 @@ Check check(const FileWorld& world, const Typed<"Union[Route, ArrayLike]">& give
     throw py::value_error("route: expected at least one point");
   }
   const py::gil_scoped_release released;
-  return Check{{host::to_json(host::judge(*route, world.mission.request, world.mission.via))},
+  return Check{{host::to_json(host::judge(*route, world.mission.request, world.mission.via,
+                                          world.mission.runways))},
                route};
 }
 

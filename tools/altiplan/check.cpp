@@ -71,8 +71,9 @@ int report(const host::Mission& mission, const Route& route,
            const std::optional<host::Track>& track, bool telemetry,
            const std::vector<host::FlightEvent>& events, bool as_json,
            const std::optional<Violation>& undone) {
-  CheckResult verdict =
-      busy("judging the route", [&] { return host::judge(route, mission.request, mission.via); });
+  CheckResult verdict = busy("judging the route", [&] {
+    return host::judge(route, mission.request, mission.via, mission.runways);
+  });
   if (undone) {
     verdict.violations.push_back(*undone);
   }

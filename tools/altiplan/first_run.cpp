@@ -243,15 +243,21 @@ void print_zones(const host::RunResult& result, const std::vector<std::string>& 
   }
 }
 
-host::PlanReport judged(const std::string& file, const host::FirstRoute& first,
-                        const host::Overrides& overrides, const host::GateOptions& options) {
+host::Mission flown_world(const host::FirstRoute& first, const host::Overrides& overrides,
+                          const std::vector<LonLat>& about) {
   host::Config config =
       host::load_scenario_text(first.flown_scenario(), "the world of go", overrides);
-  const formats::MissionFile mission = formats::read_mission(file);
   config.is_only_judged = true;
-  config.about = positions_of(mission);
+  config.about = about;
+  return host::build_mission(config, 1);
+}
+
+host::PlanReport judged(const std::string& file, const host::FirstRoute& first,
+                        const host::Overrides& overrides, const host::GateOptions& options) {
+  const formats::MissionFile mission = formats::read_mission(file);
   return busy("judging the mission", [&] {
-    return host::judge_plan(file, mission, host::build_mission(config, 1), options);
+    return host::judge_plan(file, mission, flown_world(first, overrides, positions_of(mission)),
+                            options);
   });
 }
 

@@ -49,6 +49,9 @@ std::unique_ptr<host::Unfinished> created(const std::filesystem::path& folder);
 
 /// How many zones of each file count, as its layer says.
 void print_zones(const host::RunResult& result, const std::vector<std::string>& layers);
+/// The world in which missions about these positions are judged as they are flown.
+host::Mission flown_world(const host::FirstRoute& first, const host::Overrides& overrides,
+                          const std::vector<LonLat>& about);
 /// The verdict on a mission as autopilots fly it.
 host::PlanReport judged(const std::string& file, const host::FirstRoute& first,
                         const host::Overrides& overrides, const host::GateOptions& options);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "commands.hpp"
 #include "first_run.hpp"
 #include "flight_text.hpp"
 #include "host/base/output_file.hpp"
 #include "host/first_route/first_route.hpp"
+#include "host/first_route/runway_choice.hpp"
 #include "host/gate/fewest_items.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
@@ -22,7 +25,33 @@ struct GoArguments : FirstArguments {
   std::string from;
   std::string to;
   std::vector<std::string> via;
+  bool takeoff = false;
+  bool land = false;
+  std::optional<double> runway_deg;
 };
+
+/// A copter takes off and lands straight up and down, whether it is asked to or not.
+bool uses_runway(const GoArguments& arguments, bool is_asked_for) {
+  return is_asked_for && arguments.wish.turn_radius_m;
+}
+
+/// Throws UsageError for options that do not fit together.
+void expect_runways_fit(GoArguments& arguments) {
+  const auto expect_on_ground = [](const char* option, const std::string& point, bool is_runway) {
+    if (is_runway && point_of(option, point).above_ground_m) {
+      throw UsageError{std::string(option) +
+                       ": expected LON,LAT: the end of a runway is on the ground"};
+    }
+  };
+  expect_on_ground("--from", arguments.from, uses_runway(arguments, arguments.takeoff));
+  expect_on_ground("--to", arguments.to, uses_runway(arguments, arguments.land));
+  if (arguments.runway_deg && !arguments.takeoff && !arguments.land) {
+    throw UsageError{"--runway: give --takeoff, --land or both"};
+  }
+  if (arguments.runway_deg && !arguments.wish.turn_radius_m) {
+    throw UsageError{"--runway: a copter needs none; an aeroplane is planned for with --wing"};
+  }
+}
 
 host::RouteWish wish_of(const GoArguments& arguments) {
   host::RouteWish wish = wish_of_first(arguments);
@@ -40,7 +69,7 @@ bool may_be_wider(const host::RunResult& result) {
                               result.status == host::RunStatus::timed_out);
 }
 
-void print(const host::RunResult& result) {
+void print(const host::RunResult& result, bool is_runway) {
   const host::StepResult& step = result.steps[*result.accepted];
   double seconds = 0;
   for (const host::StepResult& each : result.steps) {
@@ -48,10 +77,94 @@ void print(const host::RunResult& result) {
   }
   const Measures& m = step.measures.value();
   const std::string flown = flown_in_words(result);
-  std::printf(
-      "route: %s km, %zu waypoints, at least %s m above ground, judged valid; found in %s%s\n",
-      fixed(m.length_m / 1000, 3).c_str(), m.waypoints, fixed(m.min_ground_clearance_m, 1).c_str(),
-      duration(seconds).c_str(), flown.empty() ? "" : ("; flown in " + flown).c_str());
+  const std::string above =
+      is_runway ? "" : "at least " + fixed(m.min_ground_clearance_m, 1) + " m above ground, ";
+  std::printf("route: %s km, %zu waypoints, %sjudged valid; found in %s%s\n",
+              fixed(m.length_m / 1000, 3).c_str(), m.waypoints, above.c_str(),
+              duration(seconds).c_str(), flown.empty() ? "" : ("; flown in " + flown).c_str());
+}
+
+/// "course 250 degrees, 5.0 m/s of wind from ahead and 1.2 m/s from the side"
+std::string course_in_words(double course_deg, const std::optional<host::WishedWind>& wind) {
+  std::string words = "course " + host::with_digits(course_deg, 4) + " degrees";
+  if (wind) {
+    const double off = radians(wind->from_deg - course_deg);
+    const double ahead = wind->speed_mps * std::cos(off);
+    words += ", " + fixed(std::abs(ahead), 1) + " m/s of wind from " +
+             (ahead < 0 ? "behind" : "ahead") + " and " +
+             fixed(std::abs(wind->speed_mps * std::sin(off)), 1) + " m/s from the side";
+  }
+  return words;
+}
+
+/// True if ArduPilot arms with DO_LAND_START, which its default RTL_AUTOLAND prevents.
+bool may_name_landing(const GoArguments& arguments) {
+  const auto& parameters = arguments.gate.flight.parameters;
+  const auto given = parameters.find("RTL_AUTOLAND");
+  return given != parameters.end() && given->second.value != 0;
+}
+
+void print_runways(const host::RouteWish& wish, const GoArguments& arguments) {
+  const auto metres = [](double value) { return host::with_digits(std::round(value), 6) + " m"; };
+  if (wish.takeoff) {
+    std::printf("take-off: %s; climbs to %s above the runway within %s; check: --runway %s\n",
+                course_in_words(wish.takeoff->course_deg, wish.wind).c_str(),
+                metres(wish.takeoff->height_m).c_str(),
+                metres(wish.takeoff->height_m / std::tan(radians(wish.takeoff->climb_deg))).c_str(),
+                host::with_digits(wish.takeoff->course_deg, 6).c_str());
+  }
+  if (wish.landing) {
+    std::printf(
+        "landing: %s; level for %s at %s above the runway, then a glide of %s degrees over %s%s; "
+        "an aborted landing is not judged\n",
+        course_in_words(wish.landing->course_deg, wish.wind).c_str(),
+        metres(wish.landing->level_m).c_str(), metres(wish.landing->height_m).c_str(),
+        host::with_digits(wish.landing->glide_deg, 3).c_str(),
+        metres(wish.landing->height_m / std::tan(radians(wish.landing->glide_deg))).c_str(),
+        may_name_landing(arguments)
+            ? ""
+            : "; without DO_LAND_START, with which ArduPilot does not arm unless RTL_AUTOLAND is "
+              "set (--params)");
+  }
+}
+
+/// Chooses the courses of take-off and landing. False, which is reported, if there is none.
+bool choose_runways(host::RouteWish& wish, const host::FirstRoute& first, GoArguments& arguments) {
+  const bool takes_off = uses_runway(arguments, arguments.takeoff);
+  const bool lands = uses_runway(arguments, arguments.land);
+  if (!takes_off && !lands) {
+    return true;
+  }
+  std::vector<LonLat> about;
+  for (const host::WishedPoint& point : wish.points) {
+    about.push_back({point.lon, point.lat});
+  }
+  const Activity activity("choosing the runways");
+  const host::Mission world = flown_world(first, arguments.overrides, about);
+  host::RunwayChoice choice(world, wish, first, arguments.gate);
+  const auto at = [&](const host::WishedPoint& point) {
+    return first.local(point).head<2>().eval();
+  };
+  const std::size_t last = wish.points.size() - 1;
+  std::optional<host::TakeOffEntry> takeoff;
+  std::optional<host::LandingEntry> landing;
+  if (takes_off) {
+    takeoff = choice.takeoff(at(wish.points[0]), at(wish.points[1]), arguments.runway_deg);
+  }
+  if (lands && choice.refusal().empty()) {
+    landing =
+        choice.landing(at(wish.points[last]), at(wish.points[last - 1]), arguments.runway_deg);
+  }
+  if (!choice.refusal().empty()) {
+    std::printf("no route: %s\n", choice.refusal().c_str());
+    return false;
+  }
+  wish.takeoff = takeoff;
+  wish.landing = landing;
+  if (takeoff) {
+    arguments.gate.flight.runway_deg = takeoff->course_deg;
+  }
+  return true;
 }
 
 /// The plan with fly-by items for turns, if that passes; else with all of their points.
@@ -82,6 +195,7 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
   const bool is_wing = arguments.wish.turn_radius_m.has_value();
   route.options.takeoff = route.options.land = !is_wing;
   route.options.circles_at_end = is_wing;
+  route.options.landing_start = may_name_landing(arguments);
   finish_options(route);
   const host::Scene scene = busy("drawing the page", [&] {
     return host::build_scene({host::read_result(route.result, arguments.overrides)});
@@ -103,8 +217,15 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
 int go(GoArguments arguments) {
   read_vehicle(arguments);
   std::optional<Activity> activity("reading the model");
-  const host::RouteWish wish = wish_of(arguments);
-  const host::FirstRoute first(wish, arguments.overrides.plugin_path);
+  host::RouteWish wish = wish_of(arguments);
+  std::optional<host::FirstRoute> planned(std::in_place, wish, arguments.overrides.plugin_path);
+  if (!choose_runways(wish, *planned, arguments)) {
+    return kNoRoute;
+  }
+  if (wish.takeoff || wish.landing) {
+    planned.emplace(wish, arguments.overrides.plugin_path);
+  }
+  const host::FirstRoute& first = *planned;
   const fs::path model = fs::path(arguments.terrain.front()).lexically_normal();
   const fs::path folder = new_folder(arguments, model.has_filename() ? model : model.parent_path());
   host::FirstFiles files = first.files(0, folder);  // nothing is written if that throws
@@ -132,6 +253,7 @@ int go(GoArguments arguments) {
   for (const std::string& line : files.choices) {
     std::printf("%s\n", line.c_str());
   }
+  print_runways(wish, arguments);
   print_zones(result, files.zone_layers);
   if (interrupt.happened()) {
     return kInterrupted;
@@ -151,7 +273,7 @@ int go(GoArguments arguments) {
     }
     return result.exit_code();
   }
-  print(result);
+  print(result, wish.takeoff || wish.landing);
   const Polyline& route = result.steps[*result.accepted].route.waypoints();
   if (const std::string voids = first.over_voids(route); !voids.empty()) {
     warn(voids);
@@ -186,9 +308,19 @@ void add_points(App& command, GoArguments& arguments) {
 
 void add_go(App& app, Action& action) {
   auto [command, arguments] = add_command<GoArguments>(
-      app, action, "go", "a first route between two points, without YAML", go);
+      app, action, "go", "a first route between two points, without YAML", go, expect_runways_fit);
   add_points(command, arguments);
   add_first_options(command, arguments, "the model's name");
+  command.add_flag("--takeoff", arguments.takeoff,
+                   "begin on the ground (a copter does in any case)");
+  command.add_flag("--land", arguments.land,
+                   "end on the ground (a copter does in any case); an aeroplane's approach is "
+                   "chosen by wind, ground and zones");
+  command
+      .add_option("--runway DEGREES", arguments.runway_deg,
+                  "course of an aeroplane's take-off and landing, clockwise from north (default: "
+                  "into the wind as far as it passes)")
+      ->check(number_from(0, 360));
   add_plugin_path(command, arguments.overrides);
   set_example(command,
               "altiplan go --terrain configs/data/jacksboro_fault.tif --from -84.38,36.48 "

@@ -44,11 +44,39 @@ void LoiterEntry::describe(Fields& f) {
   f("sense", left, {{"left", true}, {"right", false}}).doc("direction of the turns");
 }
 
+namespace {
+void describe_course(Fields& f, double& course_deg, double& height_m, const char* height) {
+  f("course_deg", course_deg)
+      .unit("deg")
+      .range(0, 360)
+      .required()
+      .doc("over the ground, clockwise from north");
+  f("height_m", height_m).unit("m").range(1, 3000).required().doc(height);
+}
+void describe_slope(Fields& f, const char* name, double& angle_deg, const char* doc) {
+  f(name, angle_deg).unit("deg").range(0.5, 45).doc(doc);
+}
+}  // namespace
+
+void TakeOffEntry::describe(Fields& f) {
+  describe_course(f, course_deg, height_m, "above the start, where the climb ends");
+  describe_slope(f, "climb_deg", climb_deg, "angle of the climb, over the ground");
+}
+
+void LandingEntry::describe(Fields& f) {
+  describe_course(f, course_deg, height_m, "above the goal, where the glide begins");
+  describe_slope(f, "glide_deg", glide_deg, "angle of the glide, over the ground");
+  f("level_m", level_m).unit("m").range(1, 1e5).doc("level flight on the course before the glide");
+}
+
 void StartEntry::describe(Fields& f) {
   f.point(point).required();
   describe_heading(f, heading_deg, "heading at the start, clockwise from north; default: any");
   f("loiter", loiter).doc("circle around the point, which the route leaves tangentially");
   f.check(!loiter || !heading_deg, "a route leaves a loiter circle anywhere: remove heading_deg");
+  f("takeoff", takeoff).doc("take-off of an aeroplane from the point, which is on the ground");
+  f.check(!takeoff || (!loiter && !heading_deg),
+          "a take-off has a course: remove loiter and heading_deg");
 }
 
 void GoalEntry::describe(Fields& f) {
@@ -61,6 +89,9 @@ void GoalEntry::describe(Fields& f) {
   f("loiter", loiter).doc("circle around the point, which the route joins tangentially");
   f.check(!loiter || (!heading_deg && tolerance_m == 0),
           "a route joins a loiter circle anywhere: remove heading_deg and tolerance_m");
+  f("landing", landing).doc("landing of an aeroplane at the point, which is on the ground");
+  f.check(!landing || (!loiter && !heading_deg),
+          "a landing has a course: remove loiter and heading_deg");
 }
 
 void VolumeEntry::describe(Fields& f) {
@@ -499,6 +530,13 @@ void ScenarioFile::describe(Fields& f) {
     last.required();
   }
   f.check(!task || via.empty(), "a task orders what is passed: expected task or via, not both");
+  const bool has_runway = start.takeoff || goal.landing;
+  f.check(!has_runway || (vehicle.has_wing() && !task && !level_flight_at_m),
+          "takeoff and landing are an aeroplane's (vehicle.wing), without task and "
+          "level_flight_at_m");
+  f.check(std::none_of(via.begin(), via.end(),
+                       [](const GoalEntry& point) { return point.landing.has_value(); }),
+          "a landing ends the route: only the goal has one");
   f("moving", moving).doc("moving obstacles");
   const bool avoids = std::any_of(moving.begin(), moving.end(), [](const MovingEntry& obstacle) {
     return obstacle.known.value_or(false);

@@ -60,11 +60,29 @@ struct LoiterEntry {
   void describe(Fields& f);
 };
 
+/// A take-off of an aeroplane: straight from the start to a height.
+struct TakeOffEntry {
+  double course_deg = 0;
+  double height_m = 0;
+  double climb_deg = 4;
+  void describe(Fields& f);
+};
+
 /// Of the start: a pose, if it has a heading.
 struct StartEntry {
   Point point;
   std::optional<double> heading_deg;
   std::optional<LoiterEntry> loiter;
+  std::optional<TakeOffEntry> takeoff;
+  void describe(Fields& f);
+};
+
+/// Its landing: a level approach, then straight down to the goal.
+struct LandingEntry {
+  double course_deg = 0;
+  double height_m = 0;
+  double glide_deg = 5;
+  double level_m = 300;
   void describe(Fields& f);
 };
 
@@ -73,6 +91,7 @@ struct GoalEntry {
   double tolerance_m = 0;
   std::optional<double> heading_deg;
   std::optional<LoiterEntry> loiter;
+  std::optional<LandingEntry> landing;
   void describe(Fields& f);
 };
 

@@ -16,6 +16,8 @@ class Corridor {
   /// Throws Error for points outside the models.
   Corridor(const RouteWish& wish, Registry& registry);
 
+  /// Boxes hold this place, too.
+  void reach(const Vec3& p) { points_.push_back(p); }
   /// Boxes from the narrowest to all of the models; heights are those of the ground within.
   static constexpr int kWidths = 3;
   Box box(int width) const;

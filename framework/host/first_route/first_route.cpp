@@ -7,6 +7,7 @@
 #include "altiplan/error.hpp"
 #include "host/base/words.hpp"
 #include "host/first_route/zones.hpp"
+#include "host/mission/runways.hpp"
 #include "host/result/result_json.hpp"
 
 namespace altiplan::host {
@@ -140,6 +141,7 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
     }
   }
   expect_flyable();
+  reach_runways();
   if (wish_.survey) {
     for (const SurveyArea& area : wish_.survey->areas) {
       formats::Polygon& own = areas_.emplace_back();
@@ -152,6 +154,25 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
     for (std::size_t i = 1; i < line_.size() && wish_.survey->width_m > 0; ++i) {
       areas_.push_back({beside(line_[i - 1], line_[i], wish_.survey->width_m / 2), {}});
     }
+  }
+}
+
+Vec3 FirstRoute::local(const WishedPoint& point) const {
+  const auto [x, y] = corridor_.frame().to_local(point.lon, point.lat);
+  return {x, y, 0};
+}
+
+bool FirstRoute::is_on_ground(const WishedPoint& at) const {
+  return (wish_.takeoff && &at == &wish_.points.front()) ||
+         (wish_.landing && &at == &wish_.points.back());
+}
+
+void FirstRoute::reach_runways() {
+  if (wish_.takeoff) {
+    corridor_.reach(end_of(*wish_.takeoff, local(wish_.points.front())));
+  }
+  if (wish_.landing) {
+    corridor_.reach(line_of(*wish_.landing, local(wish_.points.back())).entry);
   }
 }
 
@@ -272,8 +293,15 @@ std::string FirstRoute::vehicle() const {
 }
 
 std::string FirstRoute::point(const WishedPoint& at) const {
-  return "{at_lonlat: [" + text_of(at.lon) + ", " + text_of(at.lat) +
-         "], above_ground_m: " + text_of(at.above_ground_m.value_or(heights_.ends_m));
+  return "{at_lonlat: [" + text_of(at.lon) + ", " + text_of(at.lat) + "], above_ground_m: " +
+         text_of(is_on_ground(at) ? 0 : at.above_ground_m.value_or(heights_.ends_m));
+}
+
+double FirstRoute::clearance_m() const {
+  if (!wish_.turn_radius_m) {
+    return kFlownWithin;
+  }
+  return lines_ || !wish_.avoid.empty() ? kWingFlownWithin : 0;
 }
 
 double FirstRoute::flown_margin() const {
@@ -313,7 +341,13 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
 }
 
 std::string FirstRoute::ends() const {
-  const std::string start = "start: " + point(wish_.points.front()) + "}\n";
+  const auto& takeoff = wish_.takeoff;
+  const std::string start = "start: " + point(wish_.points.front()) +
+                            (takeoff ? ", takeoff: {course_deg: " + text_of(takeoff->course_deg) +
+                                           ", height_m: " + text_of(takeoff->height_m) +
+                                           ", climb_deg: " + text_of(takeoff->climb_deg) + "}"
+                                     : "") +
+                            "}\n";
   if (lines_) {
     const std::string back = "goal: " + point(wish_.points.front()) + ", tolerance_m: 1}\n";
     const std::string task = survey_task();
@@ -327,7 +361,13 @@ std::string FirstRoute::ends() const {
       text += "  - " + point(wish_.points[i]) + reached;
     }
   }
-  return text + "goal: " + point(wish_.points.back()) + reached;
+  const auto& landing = wish_.landing;
+  return text + "goal: " + point(wish_.points.back()) +
+         (landing ? ", landing: {course_deg: " + text_of(landing->course_deg) + ", height_m: " +
+                        text_of(landing->height_m) + ", glide_deg: " + text_of(landing->glide_deg) +
+                        ", level_m: " + text_of(landing->level_m) + "}"
+                  : "") +
+         reached;
 }
 
 std::string FirstRoute::survey_task() const {
@@ -419,10 +459,8 @@ std::string FirstRoute::scenario(const Box& volume, const fs::path& folder) cons
       "constraints:  # of the route narrower than asked for, by what a flight may be "
       "off\n" +
       heights(flown_margin(), ", applies_to: route") + heights(0, ", applies_to: track");
-  if (!wish_.turn_radius_m || lines_) {
-    text +=
-        "  - clearance: {min_m: " + text_of(wish_.turn_radius_m ? kWingFlownWithin : kFlownWithin) +
-        ", applies_to: route}\n";
+  if (clearance_m() > 0) {
+    text += "  - clearance: {min_m: " + text_of(clearance_m()) + ", applies_to: route}\n";
   }
   return text;
 }

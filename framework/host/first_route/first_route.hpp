@@ -34,6 +34,14 @@ class FirstRoute {
   /// The scenario in which the mission of a route is judged as it is flown: with the limits that
   /// are wished for, in no volume. Its paths are relative to the current folder.
   std::string flown_scenario() const;
+  /// A point of the wish, on the ground of sea level.
+  Vec3 local(const WishedPoint& point) const;
+  double speed_mps() const;
+  const WishedHeights& heights() const { return heights_; }
+  /// By how much the limits of height are narrower than wished for, as far as the points allow.
+  double flown_margin() const;
+  /// What routes keep from obstacles, for how far beside them they may be flown; 0: nothing.
+  double clearance_m() const;
   /// Of a survey.
   const SurveyLines& lines() const { return lines_.value(); }
   /// In the frame; of a line with a width what lies beside each of its legs.
@@ -50,6 +58,9 @@ class FirstRoute {
   std::string environment(const Box& volume, const std::filesystem::path& folder) const;
   std::string vehicle() const;
   std::string point(const WishedPoint& at) const;
+  bool is_on_ground(const WishedPoint& at) const;
+  /// Has the corridor hold take-off and landing.
+  void reach_runways();
   /// Start, via points and goal; of a survey the start, if there is one, and the task.
   std::string ends() const;
   std::string survey_task() const;
@@ -58,14 +69,11 @@ class FirstRoute {
   std::string lines_in_words() const;
   /// Metres flown, about.
   double length_m() const;
-  /// By how much the limits of height are narrower than wished for, as far as the points allow.
-  double flown_margin() const;
   std::string world(const std::string& environment, const Box& volume) const;
   std::string heights(double margin, const std::string& applies_to) const;
   std::string scenario(const Box& volume, const std::filesystem::path& folder) const;
   std::vector<std::string> choices(int attempt, const Box& volume, const Search& search) const;
   std::string heights_in_words() const;
-  double speed_mps() const;
   double bank_deg() const;
   void expect_flyable() const;
 

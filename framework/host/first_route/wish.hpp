@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/config/scenario_file.hpp"
 #include "host/first_route/survey.hpp"
 
 namespace altiplan::host {
@@ -41,7 +42,9 @@ struct RouteWish {
   double reserve = 0.2;                ///< share of the battery
   std::optional<std::string> planner;  ///< none: chosen
   std::optional<std::string> start_time;
-  std::optional<SurveyWish> survey;  ///< in place of a route to a goal
+  std::optional<TakeOffEntry> takeoff;  ///< of an aeroplane, from the ground of the start
+  std::optional<LandingEntry> landing;  ///< and on that of the goal
+  std::optional<SurveyWish> survey;     ///< in place of a route to a goal
 };
 
 /// Heights above ground, metres.

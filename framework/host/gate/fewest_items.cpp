@@ -37,8 +37,9 @@ struct Node {
 /// A task's passes are flown as they are.
 std::vector<Node> nodes_of(const Route& route, const Mission& mission) {
   const std::vector<std::size_t> via = via_indices(route, mission.via);
-  const auto must = [&](std::size_t n) {
-    return mission.task || n == 0 || n + 1 == route.size() ||
+  const auto [first, last] = slanted_legs(route, mission.runways);
+  const auto must = [&, first = first, last = last](std::size_t n) {
+    return mission.task || n <= first || n >= last ||
            std::find(via.begin(), via.end(), n) != via.end();
   };
   std::vector<Node> nodes{{route.front(), true}};
@@ -175,6 +176,7 @@ class FewestSearch {
     const std::vector<PlaceTiming> timing = timing_of(places, mission_);
     text.times_s.clear();
     text.mission.items = items_of(places, mission_, place_, options_, timing);
+    text.landing_start = options_.landing_start && mission_.runways.glides_from;
     return text;
   }
 

@@ -394,7 +394,7 @@ double length_on_ground(const Route& route, const Frame& frame) {
 void add_route_violations(PlanReport& report, const Mission& world, const Request& request) {
   const Route& route = report.imported.route;
   ZoneNames names(*request.world);
-  for (const Violation& violation : judge(route, request, world.via).violations) {
+  for (const Violation& violation : judge(route, request, world.via, world.runways).violations) {
     const bool is_known = std::any_of(
         report.findings.begin(), report.findings.end(),
         [&](const Finding& other) { return other.violation.constraint == violation.constraint; });

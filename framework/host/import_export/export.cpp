@@ -37,7 +37,7 @@ std::string column_problem(const Mission& mission, const ExportSource& source, c
         blocked(home, route.front())) {
       return "the climb from home to the start passes too close to '" + layer.id + "'";
     }
-    if (options.land && blocked(down, route.back())) {
+    if (options.land && !mission.runways.glides_from && blocked(down, route.back())) {
       return "the descent from the last point passes too close to '" + layer.id + "'";
     }
     for (const auto& [at, stop] : source.stops) {
@@ -205,7 +205,8 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   Exported result;
   ExportSource source = wanted;
   std::vector<std::string> notes;
-  if (const std::string problem = problem_of(mission, source, source.route, mission.request);
+  if (const std::string problem =
+          problem_of(mission, source, source.route, mission.request, mission.via);
       !problem.empty()) {
     result.messages.push_back("not written: the route is not valid: " + problem);
     return result;
@@ -236,7 +237,7 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
     result.messages.push_back("not written: " + problem);
     return result;
   }
-  if (options.takeoff && mission.vehicle_type == VehicleType::plane) {
+  if (options.takeoff && mission.vehicle_type == VehicleType::plane && !mission.runways.climbs_to) {
     notes.emplace_back(
         "warning: an aeroplane climbs to the start from its runway, in a straight line: that climb "
         "is not judged here; altiplan check judges it from home");

@@ -17,6 +17,9 @@ struct ExportOptions {
   formats::AltitudeFrame altitude = formats::AltitudeFrame::sea;
   bool takeoff = false;
   bool land = false;
+  /// DO_LAND_START before an aeroplane's approach. Take-offs and landings on runways are written as
+  /// such, whatever the other options say.
+  bool landing_start = false;
   /// The last point is circled by the autopilot, not left for home.
   bool circles_at_end = false;
   /// Turns as circles where an autopilot flies them so; else all as points.

@@ -56,17 +56,24 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
     const auto kind = each.circle ? MissionItem::Kind::loiter : MissionItem::Kind::waypoint;
     items.push_back({kind, place(each.at), 0, "", each.circle});
   }
-  if (options.takeoff) {
+  const bool has_runways = mission.runways.has_any() && options.format->has_commands();
+  if (options.takeoff || (has_runways && mission.runways.climbs_to)) {
     if (items.front().circle) {
       throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
     }
     items.front().kind = MissionItem::Kind::takeoff;
   }
-  if (options.land) {
+  if (has_runways && mission.runways.climbs_to) {  // on its line, at the height of its end
+    const Vec3 end = *mission.runways.climbs_to;
+    const Vec3 middle = (places.front().at + end) / 2;
+    items.front().at = place({middle.x(), middle.y(), end.z()});
+  }
+  if (has_runways && mission.runways.glides_from) {
+    items.back().kind = MissionItem::Kind::land;
+  } else if (options.land) {
     const Vec3 down = landing(mission, {places.back().at}, place);
     items.push_back({MissionItem::Kind::land, place(down), 0, ""});
-  }
-  if (options.circles_at_end && places.back().hold_s == 0 && !items.back().circle) {
+  } else if (options.circles_at_end && places.back().hold_s == 0 && !items.back().circle) {
     items.back().kind = MissionItem::Kind::loiter;
   }
   for (std::size_t n = 0; n < timing.size(); ++n) {
@@ -96,10 +103,10 @@ bool tell_stops(const std::vector<MissionPlace>& places, const std::vector<Place
 }
 
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
-                       const Request& request) {
+                       const Request& request, const std::vector<Goal>& via) {
   CheckResult check;
   if (source.times.empty()) {
-    check = judge(route, request, mission.via);
+    check = judge(route, request, via, mission.runways);
   } else {
     Track track;
     for (std::size_t n = 0; n < route.size(); ++n) {
@@ -145,7 +152,7 @@ std::vector<PlaceTiming> timing_of(const WrittenRoute& written, const Mission& m
 std::size_t item_count(const WrittenRoute& written, const std::vector<PlaceTiming>& timing,
                        const Mission& mission, const ExportOptions& options) {
   return written.places.size() + speed_changes(timing, mission.request.vehicle.speed_mps) +
-         (options.land ? 1 : 0);
+         (options.land && !mission.runways.glides_from ? 1 : 0);
 }
 
 }  // namespace
@@ -185,6 +192,23 @@ Route with_waits(const Route& route, const formats::MissionFile& file) {
   return waiting;
 }
 
+/// A take-off item stands on the way to the end of the climb.
+Route from_runway(const Route& route, const Vec3& start) {
+  Route whole{start};
+  whole.push_back(Leg::straight(start, route[1]));
+  for (std::size_t n = 1; n < route.leg_count(); ++n) {
+    whole.push_back(route.leg(n));
+  }
+  return whole;
+}
+
+std::vector<Goal> without_headings(std::vector<Goal> via) {
+  for (Goal& each : via) {
+    each.heading.reset();
+  }
+  return via;
+}
+
 /// The route as text, in the ways that may be tried.
 struct Attempt {
   const Mission& mission;
@@ -208,9 +232,13 @@ struct Attempt {
       if (source.route.waits()) {
         read.route = with_waits(read.route, read_mission_file(name, now));
       }
+      if (mission.runways.climbs_to && options.format->has_commands()) {
+        read.route = from_runway(read.route, source.route.front());
+      }
       const std::string problem_now =
           problem_of(mission, source, read.route,
-                     without_tangents ? ending_with(request, read.route) : request);
+                     without_tangents ? ending_with(request, read.route) : request,
+                     without_tangents ? without_headings(mission.via) : mission.via);
       if (problem_now.empty()) {
         return now;
       }
@@ -221,6 +249,7 @@ struct Attempt {
 
   std::string as_text() {
     text.mission.items = items_of(written.places, mission, place, options, timing);
+    text.landing_start = options.landing_start && mission.runways.glides_from;
     text.local.clear();
     text.holds_s.clear();
     for (const MissionPlace& each : written.places) {

@@ -24,7 +24,7 @@ bool tell_stops(const std::vector<MissionPlace>& places, const std::vector<Place
 
 /// The first violation of the route as written and read back; "" if it is valid.
 std::string problem_of(const Mission& mission, const ExportSource& source, const Route& route,
-                       const Request& request);
+                       const Request& request, const std::vector<Goal>& via);
 
 /// The number of items that the route takes, with the commands that set speeds.
 std::size_t item_count(const ExportSource& source, const Mission& mission,

@@ -40,6 +40,7 @@ struct MissionText {
   std::vector<double> holds_s;            ///< waits at each item, whole seconds; empty: none
   std::map<std::size_t, ItemStop> stops;  ///< by item, in place of its wait
   std::optional<double> start_time_s;     ///< of the route, since 1970-01-01 UTC
+  bool landing_start = false;             ///< the last three items are an approach and a landing
 };
 
 /// The value of `rounded_text`.

@@ -40,12 +40,12 @@ void expect_possible(const Mission& mission, const ExportOptions& options, const
         "--altitude home, --takeoff and --land need the altitude of home, and the world has no "
         "ground below the start: give --home-altitude M, in metres above sea level");
   }
-  if (options.land && mission.vehicle_type == VehicleType::plane) {
+  if (options.land && mission.vehicle_type == VehicleType::plane && !mission.runways.glides_from) {
     throw Error(
         "--land: an aeroplane cannot descend vertically below its last point: leave its landing to "
         "the ground station, or give vehicle: {type: vtol}");
   }
-  if (options.takeoff && *home >= start.z()) {
+  if (options.takeoff && *home >= start.z() && !mission.runways.climbs_to) {
     throw Error("--takeoff: the start, " + rounded_text(start.z(), 3) +
                 " m above sea level, is not above home, " + rounded_text(*home, 3) + " m");
   }

@@ -154,6 +154,7 @@ std::vector<PlanItem> fence_of(const std::vector<formats::Zone>& zones, const De
 }  // namespace
 
 Plan plan_of(const MissionText& text) {
+  constexpr std::size_t kLandingItems = 3;
   constexpr int kFixedWing = 1;
   constexpr int kQuadrotor = 2;
   constexpr int kVtol = 20;  // as QGroundControl calls any of them
@@ -167,6 +168,9 @@ Plan plan_of(const MissionText& text) {
   double speed_mps = text.speed_mps;
   for (std::size_t n = 0; n < text.mission.items.size(); ++n) {
     const MissionItem& item = text.mission.items[n];
+    if (text.landing_start && n + kLandingItems == text.mission.items.size()) {
+      plan.items.push_back({Command::kLandingStart, kMissionFrame});
+    }
     if (item.speed_mps > 0 && item.speed_mps != speed_mps) {
       speed_mps = item.speed_mps;
       plan.items.push_back(speed_item(speed_mps, text.decimals.metres));

@@ -23,7 +23,8 @@ struct Command {
   static constexpr int kDelay = 93;           ///< parameter 1: seconds
   static constexpr int kChangeSpeed = 178;    ///< parameters 1: 1, over the ground; 2: m/s
   static constexpr int kCameraTrigger = 206;  ///< parameters 1: metres, 0: off; 3: a photo at once
-  static constexpr int kGripper = 211;        ///< parameters 1: number of it; 2: 0, to release
+  static constexpr int kLandingStart = 189;
+  static constexpr int kGripper = 211;          ///< parameters 1: number of it; 2: 0, to release
   static constexpr int kFencePolygonIn = 5001;  ///< a corner; parameter 1: number of corners
   static constexpr int kFencePolygonOut = 5002;
   static constexpr int kFenceCircleIn = 5003;  ///< parameter 1: radius

@@ -126,8 +126,17 @@ CheckResult check_in_time(const Route& route, const Request& request) {
 }
 }  // namespace
 
-CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via) {
-  CheckResult result = check_in_time(route, request);
+CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via,
+                  const Runways& runways) {
+  CheckResult result = check_in_time(route, runways.has_any() ? above_no_ground(request) : request);
+  if (runways.has_any()) {
+    for (Violation& violation : ground_violations(route, request, runways)) {
+      if (std::find(result.violations.begin(), result.violations.end(), violation) ==
+          result.violations.end()) {
+        result.violations.push_back(std::move(violation));
+      }
+    }
+  }
   const std::vector<std::size_t> indices = via_indices(route, via);
   const std::size_t passed = indices.size();
   for (std::size_t i = 0; i < passed; ++i) {

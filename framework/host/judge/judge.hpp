@@ -6,13 +6,15 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/request.hpp"
+#include "host/judge/runways.hpp"
 
 namespace altiplan::host {
 
 /// The API's check, the via points in order, and a consistency check of each layer's `blocked`
 /// against its `clearance` along the route: if they disagree, the violation's constraint is "layer"
 /// and its message names the layer.
-CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via);
+CheckResult judge(const Route& route, const Request& request, const std::vector<Goal>& via,
+                  const Runways& runways = {});
 
 /// What a route costs by the request's objective, and a lower bound of the cost of all routes that
 /// pass the via points.

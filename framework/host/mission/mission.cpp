@@ -14,6 +14,7 @@
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/mission/coverage.hpp"
+#include "host/mission/runways.hpp"
 #include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
 #include "host/mission/volume.hpp"
@@ -503,6 +504,7 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   apply_constraints(mission.track_request, constraints, AppliesTo::track);
   request.vehicle.radius_m *= 1 + scale_error;
   request.limits.min_clearance *= 1 + scale_error;
+  add_runways(file, mission);
   calling("");
   site.before = nullptr;
   mission.setup_time_s =

@@ -8,6 +8,7 @@
 #include "altiplan/request.hpp"
 #include "altiplan/task.hpp"
 #include "host/config/config.hpp"
+#include "host/judge/runways.hpp"
 #include "host/mission/objective.hpp"
 
 namespace altiplan::host {
@@ -22,6 +23,7 @@ struct Mission {
   /// The same with those that apply to tracks.
   Request track_request;
   std::vector<Goal> via;
+  Runways runways;  ///< an aeroplane's, whose ends are the first and the last of the via points
   /// What is to be done; until its passes are ordered, start and goal are where the scenario gives
   /// them, or nowhere in particular. Null: nothing.
   std::shared_ptr<const Task> task;

@@ -96,7 +96,7 @@ void Run::take_route(const Route& route) {
   given.route = route;
   given.measures = measure(route, mission_.request);
   given.metrics = measured(route, mission_.request, mission_.metrics);
-  given.check = judge(route, mission_.request, mission_.via);
+  given.check = judge(route, mission_.request, mission_.via, mission_.runways);
   given.cost = price(route, mission_.request, mission_.via);
   result_.steps.push_back(std::move(given));
   result_.accepted = 0;

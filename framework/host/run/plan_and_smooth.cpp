@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/mission/runways.hpp"
+
 namespace altiplan::host {
 
 void Run::attempt(const StepEntry& step) {
@@ -95,7 +97,23 @@ std::unique_ptr<Session> Run::begin_session(const PlanPlugin& made, const Reques
 }
 
 PlanPart Run::part_of(const PlanPlugin& made) const {
-  return task_ ? task_->part(made.part()) : made.part();
+  if (task_) {
+    return task_->part(made.part());
+  }
+  return [this, part = made.part()](const Request& request) {
+    PlanResult result;
+    if (auto line = runway_section(mission_, request.start.position, request.goal.position)) {
+      result.status = PlanStatus::solved;
+      result.route = Route(*std::move(line));
+      return result;
+    }
+    if (!mission_.runways.has_any()) {
+      return part(request);
+    }
+    Request exact = request;  // where a runway's line begins
+    exact.goal.tolerance_m = exact.goal.heading ? 0 : exact.goal.tolerance_m;
+    return part(exact);
+  };
 }
 
 std::optional<PlanResult> Run::order_task(const Request& request) {
@@ -190,7 +208,7 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   std::vector<std::size_t> cuts = via_indices(before, mission_.via);
   std::vector<Goal> fixed;
   for (const std::size_t cut : cuts) {
-    fixed.push_back({before[cut], 0});
+    fixed.push_back({before[cut], 0, mission_.via[fixed.size()].heading});
   }
   cuts.push_back(before.size() - 1);
   std::size_t from = 0;
@@ -199,7 +217,8 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
     const Route section = before.part(from, cuts[piece]);
     PlanResult result;
-    if (section.leg_count() == 1 && section.leg(0).waits()) {  // a stop of a task
+    const bool is_stop = section.leg_count() == 1 && section.leg(0).waits();  // of a task
+    if (is_stop || runway_section(mission_, section.front(), section.back())) {
       result.status = PlanStatus::solved;
       result.route = section;
     } else {

@@ -21,7 +21,7 @@ void Run::judge_step(StepResult& step, const Request& request) {
   enter("judging the route of '" + step.id + "' by layers and constraints (" + asked + ")");
   try {
     if (step.status == RunStatus::solved) {  // first: the judge knows the cause
-      step.check = judge(step.route, request, mission_.via);
+      step.check = judge(step.route, request, mission_.via, mission_.runways);
       if (task_) {
         if (auto unflown = task_->violation(step.route, request)) {
           step.check->violations.push_back(*std::move(unflown));

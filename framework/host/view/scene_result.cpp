@@ -18,7 +18,8 @@ struct Judged {
 };
 
 Judged judged(const Route& route, const Mission& mission) {
-  return {route, judge(route, mission.request, mission.via), measure(route, mission.request)};
+  return {route, judge(route, mission.request, mission.via, mission.runways),
+          measure(route, mission.request)};
 }
 
 /// Of each waypoint, its index in the points that show the route's turns.
