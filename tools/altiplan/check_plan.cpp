@@ -14,6 +14,7 @@
 #include "host/base/output_file.hpp"
 #include "host/base/sha256.hpp"
 #include "host/base/utf8.hpp"
+#include "host/first_route/zones.hpp"
 #include "host/gate/certificate.hpp"
 #include "host/gate/changed_plan.hpp"
 #include "host/gate/declared_battery.hpp"
@@ -290,6 +291,10 @@ host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
   for (const std::string& file : plan.airspace) {
     add_file("airspace", file);
   }
+  for (const std::string& zone : plan.permitted) {
+    basis.emplace_back("permission had", zone == host::kEveryZone ? "for every zone that takes one"
+                                                                  : "for '" + zone + "'");
+  }
   if (plan.airspace.empty()) {
     basis.emplace_back("airspace", "none given: not judged");
   }
@@ -302,6 +307,7 @@ host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
                                    " m above sea level: armed at that place and height");
   }
   add_metres("vehicle's radius", plan.radius_m);
+  add_metres("distance kept from zones", plan.buffer_m);
   add_metres("minimum height above ground", plan.min_above_ground_m);
   add_metres("greatest height above ground", plan.max_above_ground_m);
   add_metres("greatest distance from the ground", plan.max_ground_distance_m);

@@ -18,8 +18,9 @@ struct PlanCheck {
   std::vector<std::string> terrain;  ///< models, or folders of them
   std::string crs;                   ///< of a model that names none
   std::vector<std::string> airspace;
-  bool fills_voids = false;     ///< from their neighbours, else they are closed
-  bool has_permission = false;  ///< for zones that take one
+  bool fills_voids = false;            ///< from their neighbours, else they are closed
+  std::vector<std::string> permitted;  ///< zones that a permission opens, as in host::ZoneUse
+  double buffer_m = 0;                 ///< kept from zones
   double radius_m = 0;
   host::GateOptions gate;                 ///< who may fly it
   std::optional<std::string> parameters;  ///< a file with the autopilot's

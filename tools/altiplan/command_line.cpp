@@ -140,6 +140,11 @@ Option* Option::one_at_a_time() {
   return this;
 }
 
+Option* Option::otherwise(const std::string& value) {
+  otherwise_ = value;
+  return one_at_a_time();
+}
+
 Option* Option::capture_default_str() {
   option_->capture_default_str();
   return this;
@@ -268,9 +273,32 @@ void App::callback(const std::function<void()>& call) {
   });
 }
 
+std::vector<std::string> App::completed(int argc, char** argv) const {
+  std::map<std::string, std::string> otherwise;
+  for (const auto& subcommand : subcommands_) {
+    for (const auto& option : subcommand->options_) {
+      if (!option->otherwise_.empty()) {
+        otherwise.emplace(option->name(), option->otherwise_);
+      }
+    }
+  }
+  std::vector<std::string> arguments;
+  for (int n = argc - 1; n > 0; --n) {
+    const auto found = otherwise.find(argv[n]);
+    std::error_code ignored;
+    if (found != otherwise.end() && (arguments.empty() || arguments.back().starts_with("-") ||
+                                     std::filesystem::is_regular_file(arguments.back(), ignored))) {
+      arguments.push_back(found->first + "=" + found->second);
+    } else {
+      arguments.emplace_back(argv[n]);
+    }
+  }
+  return arguments;
+}
+
 std::optional<int> App::parse(int argc, char** argv) {
   try {
-    app_->parse(argc, argv);
+    app_->parse(completed(argc, argv));
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     return refuse(*app_, error);

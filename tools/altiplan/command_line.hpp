@@ -74,6 +74,9 @@ class Option {
   Option* take_all();
   /// One value each time, so that a -- that follows is not taken for another.
   Option* one_at_a_time();
+  /// The value where none follows, nor `--name=VALUE`: before another option, at the end, and
+  /// before the name of a file, which is an argument of its own.
+  Option* otherwise(const std::string& value);
   Option* capture_default_str();
   /// Not in --help.
   Option* hide();
@@ -82,8 +85,10 @@ class Option {
   OptionText text() const;
 
  private:
+  friend class App;
   CLI::Option* option_;
   std::vector<std::string> words_;
+  std::string otherwise_;
 };
 
 class App {
@@ -117,6 +122,8 @@ class App {
  private:
   explicit App(CLI::App* subcommand);
   Option* keep(CLI::Option* option, const std::string& names = "");
+  /// The arguments, last first, with the value of Option::otherwise where it is left out.
+  std::vector<std::string> completed(int argc, char** argv) const;
   CommandText text() const;
 
   std::unique_ptr<CLI::App> own_;

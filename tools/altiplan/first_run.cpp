@@ -12,6 +12,7 @@
 #include "host/base/words.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
+#include "mission_options.hpp"
 #include "plan_world.hpp"
 #include "progress.hpp"
 
@@ -22,8 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kNamed = 4;  ///< zones in a sentence
 
-/// Names of the keep-out zones that the route enters, quoted.
-std::vector<std::string> zones_entered(const World& world, const Polyline& route) {
+/// Names of the keep-out zones that the route enters, or comes nearer to than the buffer, quoted.
+std::vector<std::string> zones_entered(const World& world, const Polyline& route,
+                                       double buffer_m = 0) {
   std::vector<std::string> names;
   for (const Layer& layer : world.layers()) {
     const std::optional<Drawing> drawing = layer.environment->drawing();
@@ -32,7 +34,9 @@ std::vector<std::string> zones_entered(const World& world, const Polyline& route
     }
     for (const Drawn& zone : drawing->shapes) {
       const auto enters = [&](std::size_t n) {
-        return leg_depth(zone.shape, route[n], route[std::min(n + 1, route.size() - 1)]) > 0;
+        const Vec3& to = route[std::min(n + 1, route.size() - 1)];
+        return leg_depth(zone.shape, route[n], to) > 0 ||
+               comes_within(zone.shape, route[n], to, buffer_m);
       };
       for (std::size_t n = 0; zone.role == Drawn::Role::keep_out && n < route.size(); ++n) {
         if (enters(n)) {
@@ -63,13 +67,18 @@ std::string kilometres(const Polyline& route) {
   return host::with_digits(length(route) / 1000, 4) + " km";
 }
 
-/// Of points that lie in zones, which no route can leave.
-std::vector<std::string> ends_in_zones(const host::Mission& mission) {
+/// Of points that lie in zones, or in their buffer, which no route can leave.
+std::vector<std::string> ends_in_zones(const host::Mission& mission, double buffer_m) {
   std::vector<std::string> sentences;
   const auto add = [&](const std::string& what, const Vec3& at) {
-    const std::vector<std::string> names = zones_entered(mission.truth, {at, at});
-    if (!names.empty()) {
-      sentences.push_back(what + " lies in " + host::listed(names, kNamed));
+    const std::string within = " within --buffer, " + host::with_digits(buffer_m, 4) + " m, of ";
+    for (const double reach : {0.0, buffer_m}) {
+      const std::vector<std::string> names = zones_entered(mission.truth, {at, at}, reach);
+      if (!names.empty()) {
+        sentences.push_back(what + " lies" + (reach > 0 ? within : " in ") +
+                            host::listed(names, kNamed));
+        return;
+      }
     }
   };
   add("the start", mission.request.start.position);
@@ -147,10 +156,12 @@ void add_terrain(App& command, FirstArguments& arguments) {
 void add_first_options(App& command, FirstArguments& arguments, const std::string& folder) {
   host::RouteWish& wish = arguments.wish;
   add_vehicle(command, arguments);
-  command
-      .add_option("--avoid FILE", arguments.avoid,
-                  "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
-      ->take_all();
+  auto* avoid = command
+                    .add_option("--avoid FILE", arguments.avoid,
+                                "zones: published airspace, GeoJSON, KML, or a fence; repeatable")
+                    ->take_all();
+  add_permission(command, wish.permitted)->needs(avoid);
+  add_buffer(command, wish.buffer_m)->needs(avoid);
   const auto metres = [&](const char* name, std::optional<double>& value, const char* what) {
     return command.add_option(std::string(name) + " METRES", value, what)
         ->check(number_from(0, 1e4));
@@ -292,7 +303,7 @@ host::RunResult run_in(const fs::path& folder, const host::FirstFiles& files,
 std::vector<std::string> reasons_of(const FailedTry& failed, Interrupt& interrupt) {
   const host::Mission mission =
       host::build_mission(host::load_config(failed.folder / "pipeline.yaml", failed.overrides), 1);
-  std::vector<std::string> reasons = ends_in_zones(mission);
+  std::vector<std::string> reasons = ends_in_zones(mission, failed.wish.buffer_m);
   // The first thing to give up that a route is found without; empty where it is not tried.
   const auto found_without = [&](bool is_given, const auto& give_up) {
     if (!is_given || !reasons.empty() || interrupt.happened()) {
@@ -307,6 +318,15 @@ std::vector<std::string> reasons_of(const FailedTry& failed, Interrupt& interrup
   if (!route.empty()) {
     reasons.push_back("--planner " + *failed.wish.planner + ": without it a route of " +
                       kilometres(route) + " is found within the same limits");
+  }
+  const double buffer_m = failed.wish.buffer_m;
+  route = found_without(buffer_m > 0, [](host::RouteWish& wish) { wish.buffer_m = 0; });
+  if (!route.empty()) {
+    const std::vector<std::string> names = zones_entered(mission.truth, route, buffer_m);
+    reasons.push_back(
+        "--buffer " + host::with_digits(buffer_m, 4) + " is too much: without it a route of " +
+        kilometres(route) + " is found" +
+        (names.empty() ? "" : ", which comes nearer to " + host::listed(names, kNamed)));
   }
   route =
       found_without(!failed.wish.avoid.empty(), [](host::RouteWish& wish) { wish.avoid.clear(); });

@@ -13,6 +13,7 @@
 #include "host/gate/fewest_items.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
+#include "mission_options.hpp"
 #include "progress.hpp"
 #include "route_export.hpp"
 
@@ -307,8 +308,12 @@ void add_points(App& command, GoArguments& arguments) {
 }  // namespace
 
 void add_go(App& app, Action& action) {
+  const auto prepare = [](GoArguments& given) {
+    expect_permissions(given.wish.permitted, given.avoid);
+    expect_runways_fit(given);
+  };
   auto [command, arguments] = add_command<GoArguments>(
-      app, action, "go", "a first route between two points, without YAML", go, expect_runways_fit);
+      app, action, "go", "a first route between two points, without YAML", go, prepare);
   add_points(command, arguments);
   add_first_options(command, arguments, "the model's name");
   command.add_flag("--takeoff", arguments.takeoff,

@@ -3,6 +3,7 @@
 
 #include "altiplan/formats/iso_time.hpp"
 #include "altiplan/formats/mission_file.hpp"
+#include "host/first_route/zones.hpp"
 #include "host/import_export/route_format.hpp"
 
 namespace altiplan::cli {
@@ -21,10 +22,8 @@ void add_world_options(App& command, Option* terrain, PlanCheck& plan) {
       ->needs(terrain);
   command.add_option("--crs EPSG:CODE", plan.crs, "coordinate system of a model that names none")
       ->needs(terrain);
-  command
-      .add_flag("--permission", plan.has_permission,
-                "zones that take a permission are open, because you have it")
-      ->needs(terrain);
+  add_permission(command, plan.permitted)->needs(terrain);
+  add_buffer(command, plan.buffer_m)->needs(terrain);
   command
       .add_flag(
           "--fill-voids", plan.fills_voids,
@@ -69,6 +68,36 @@ void add_autopilot_options(App& command, MissionOptions& mission) {
 }
 }  // namespace
 
+Option* add_permission(App& command, std::vector<std::string>& permitted) {
+  return command
+      .add_option("--permission [ZONE]", permitted,
+                  "the zone of this name or identifier is open, because you have the permission "
+                  "that it takes; without one, all that take a permission; repeatable")
+      ->take_all()
+      ->otherwise(host::kEveryZone);
+}
+
+Option* add_buffer(App& command, double& buffer_m) {
+  return command
+      .add_option("--buffer METRES", buffer_m,
+                  "distance to keep from all zones, in any direction, and from the border of those "
+                  "to stay in (m, default 0)")
+      ->check(number_from(0, 1e5));
+}
+
+void expect_permissions(const std::vector<std::string>& permitted,
+                        const std::vector<std::string>& files) {
+  std::string problem;
+  try {
+    problem = host::permission_problem(permitted, {files.begin(), files.end()});
+  } catch (const Error&) {
+    return;  // who uses the file says what is wrong with it
+  }
+  if (!problem.empty()) {
+    throw UsageError{"--permission: " + problem};
+  }
+}
+
 Option* add_mission_options(App& command, MissionOptions& mission) {
   Option* terrain =
       command
@@ -95,6 +124,7 @@ PlanCheck checked_plan(const MissionOptions& mission, const std::string& file) {
       !(*plan.min_above_ground_m < *plan.max_above_ground_m)) {
     throw UsageError{"--min-agl: expected less than --max-agl"};
   }
+  expect_permissions(plan.permitted, plan.airspace);
   if (mission.autopilot) {
     plan.gate.firmware =
         *mission.autopilot == "px4" ? formats::Firmware::px4 : formats::Firmware::ardupilot;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "check_plan.hpp"
 #include "commands.hpp"
@@ -18,6 +19,13 @@ struct MissionOptions {
 
 /// Adds --terrain, which is returned, and what goes with it: the world, and who flies.
 Option* add_mission_options(App& command, MissionOptions& mission);
+
+/// --permission [ZONE] and --buffer METRES, of zones.
+Option* add_permission(App& command, std::vector<std::string>& permitted);
+Option* add_buffer(App& command, double& buffer_m);
+/// Throws UsageError for a permission that opens no zone of the files.
+void expect_permissions(const std::vector<std::string>& permitted,
+                        const std::vector<std::string>& files);
 
 /// The mission in `file`, with these options; throws UsageError where they contradict each other.
 PlanCheck checked_plan(const MissionOptions& mission, const std::string& file);

@@ -183,20 +183,18 @@ std::string world_text(const PlanCheck& plan, const formats::MissionFile& missio
     text += "  - zones: {file: " + path_text(file) + more +
             "}\n    id: " + host::exact_json_text(name) + "\n";
   };
+  const host::ZoneUse use{plan.start_time.has_value(), plan.buffer_m, plan.permitted};
   const double seconds = plan.start_time ? horizon_s(plan, mission) : 0;
   for (const std::string& file : plan.airspace) {
     const std::string hours = plan.start_time  // else zones count at all hours
                                   ? ", horizon_s: " + host::exact_json_text(seconds)
                                   : "";
-    add_zones(file, name_of(file),
-              hours + host::zone_parameters(absolute(file), plan.start_time.has_value()) +
-                  (plan.has_permission ? ", ask: skip" : ""));
+    add_zones(file, name_of(file), hours + host::zone_parameters(absolute(file), use));
   }
   if (has_fence(mission)) {
-    add_zones(plan.plan, "fence of the mission", ", keep_in: all");
+    add_zones(plan.plan, "fence of the mission", host::zone_parameters(absolute(plan.plan), use));
   } else if (!is_airspace(plan) && has_roles(zones_beside(plan.plan, mission))) {
-    add_zones(plan.plan, "zones of the mission",
-              host::zone_parameters(absolute(plan.plan), plan.start_time.has_value()));
+    add_zones(plan.plan, "zones of the mission", host::zone_parameters(absolute(plan.plan), use));
   }
   // The ground and the zones alone bound a mission.
   text += "volume: {min_m: [-1e8, -1e8, -1e4], max_m: [1e8, 1e8, 1e5]}\n";

@@ -10,6 +10,7 @@
 #include "host/base/words.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
+#include "mission_options.hpp"
 #include "progress.hpp"
 #include "survey_flights.hpp"
 #include "survey_item.hpp"
@@ -222,6 +223,7 @@ void add_survey(App& app, Action& action) {
       throw UsageError{
           "--flight-minutes and --battery are for copters: an aeroplane's plan ends in a circle"};
     }
+    expect_permissions(given.wish.permitted, given.avoid);
   };
   auto [command, arguments] = add_command<SurveyArguments>(
       app, action, "survey", "photos of areas or along a line from above, without YAML", survey,

@@ -134,7 +134,7 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
 
 FileInfo zones_info(const fs::path& file, const std::optional<formats::Airspace>& airspace,
                     Registry& registry) {
-  const std::string parameters = zone_parameters(file, false);
+  const std::string parameters = zone_parameters(file, {});
   std::unique_ptr<Environment> layer;
   FileInfo info{airspace ? "published airspace" : "zones", {}, {}};
   try {

@@ -127,7 +127,8 @@ FirstRoute::FirstRoute(const RouteWish& wish, const std::vector<fs::path>& plugi
       corridor_(wish, *registry_) {
   for (const fs::path& file : wish_.avoid) {
     try {
-      zone_parameters_.push_back(zone_parameters(file, wish_.start_time.has_value()));
+      zone_parameters_.push_back(
+          zone_parameters(file, {wish_.start_time.has_value(), wish_.buffer_m, wish_.permitted}));
     } catch (const Error& error) {
       throw Error(std::string("--avoid: ") + error.what());
     }

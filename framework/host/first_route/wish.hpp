@@ -30,6 +30,8 @@ struct RouteWish {
   std::vector<std::filesystem::path> terrain;  ///< models, or folders of them
   std::optional<std::string> crs;              ///< of models that name none
   std::vector<std::filesystem::path> avoid;    ///< files of zones
+  double buffer_m = 0;                         ///< kept from zones
+  std::vector<std::string> permitted;          ///< zones that a permission opens, as in ZoneUse
   std::vector<WishedPoint> points;             ///< start, via points, goal
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;

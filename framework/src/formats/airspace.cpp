@@ -189,6 +189,53 @@ std::string Zone::label() const {
   return id + " (" + name + ")";
 }
 
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return char(std::tolower(letter)); });
+  return text;
+}
+
+/// "; did you mean 'TMA (1/4)', 'TMA (2/4)'?" of zones whose label holds the text, else of the
+/// nearest name; without one, the zones that take a permission.
+std::string meant(const std::vector<Zone>& zones, const std::string& called) {
+  std::vector<std::string> holding;
+  std::vector<std::string> asking;
+  std::vector<std::string> names;
+  for (const Zone& zone : zones) {
+    const std::string label = zone.label();
+    if (!called.empty() && lower_case(label).find(lower_case(called)) != label.npos) {
+      holding.push_back(label);
+    }
+    if (zone.restriction == Restriction::ask) {
+      asking.push_back(label);
+    }
+    names.insert(names.end(), {zone.id, zone.name, label});
+  }
+  if (const std::string near = nearest_name(called, names); holding.empty() && !near.empty()) {
+    holding.push_back(near);
+  }
+  return !holding.empty() ? "; did you mean " + names_text(holding) + "?"
+         : asking.empty() ? "; none takes a permission"
+                          : "; a permission is taken by " + names_text(asking);
+}
+}  // namespace
+
+std::string permission_problem(const std::vector<Zone>& zones, const std::string& called) {
+  std::string closed;
+  for (const Zone& zone : zones) {
+    if (zone.is_called(called) && zone.takes_permission()) {
+      return "";
+    }
+    if (zone.is_called(called)) {
+      closed = "no permission opens '" + zone.label() + "'" +
+               (zone.type.empty() ? "" : " (" + zone.type + ")") + ": it stays closed";
+    }
+  }
+  return !closed.empty() ? closed : "no zone is called '" + called + "'" + meant(zones, called);
+}
+
 std::string format_name(Airspace::Format format) {
   switch (format) {
     case Airspace::Format::ed269:

@@ -117,7 +117,7 @@ Parts split(const Prism& prism, const Box& box) {
              : Parts{{}, {prism}};
 }
 
-Clip::Clip(const Site& site) : bounds_(site.volume) {
+Clip::Clip(const Site& site, double beyond) : bounds_(site.volume) {
   const Box layers = site.before->bounds();
   for (int axis = 0; axis < 2; ++axis) {
     if (!std::isfinite(bounds_.min[axis])) {
@@ -132,6 +132,7 @@ Clip::Clip(const Site& site) : bounds_(site.volume) {
                            "with bounds before this one");
     }
   }
+  bounds_ = bounds_.grown(beyond);
 }
 
 std::vector<Shape> Clip::cut(const Shape& shape) {

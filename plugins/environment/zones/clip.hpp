@@ -21,8 +21,9 @@ Parts split(const Prism& prism, const Box& box);
 /// Cuts shapes at the horizontal bounds of a world; heights are unchanged.
 class Clip {
  public:
-  /// Throws ParameterError("clip", …) if the world has no horizontal bounds.
-  explicit Clip(const Site& site);
+  /// Throws ParameterError("clip", …) if the world has no horizontal bounds. What lies within
+  /// `beyond` metres of them counts as within.
+  explicit Clip(const Site& site, double beyond = 0);
 
   /// The parts of the shape within the bounds: none if it lies outside, possibly several pieces of
   /// a prism. A cylinder that intersects the bounds stays whole.

@@ -140,6 +140,11 @@ bool has_times(const Zone& zone) {
 }
 
 Use use_of(const Zone& zone, const PublishedRules& rules) {
+  if (zone.takes_permission() &&
+      std::any_of(rules.permitted.begin(), rules.permitted.end(),
+                  [&](const std::string& called) { return zone.is_called(called); })) {
+    return Use::skip;
+  }
   switch (zone.restriction) {
     case formats::Restriction::ask:
       return rules.ask;
@@ -150,10 +155,24 @@ Use use_of(const Zone& zone, const PublishedRules& rules) {
   }
 }
 
+/// The zones that a permission opens: "open by a permission: 'LSZB CTR'", "" if there are none.
+std::string opened(const formats::Airspace& airspace, const PublishedRules& rules) {
+  std::vector<std::string> names;
+  for (const Zone& zone : airspace.zones) {
+    if (zone.restriction == formats::Restriction::ask && use_of(zone, rules) == Use::skip) {
+      names.push_back(zone.label());
+    }
+  }
+  return names.empty() ? "" : "open by a permission: " + formats::names_text(names);
+}
+
 /// "keep out: 2 P, 6 R; ask (closed): 3 CTR; inform (skipped): 4 G"
 std::string mapping(const formats::Airspace& airspace, const PublishedRules& rules) {
   std::map<formats::Restriction, std::map<std::string, std::size_t>> counts;
   for (const Zone& zone : airspace.zones) {
+    if (zone.restriction == formats::Restriction::ask && rules.ask != use_of(zone, rules)) {
+      continue;  // by its name
+    }
     ++counts[zone.restriction][zone.type.empty() ? "without a class" : zone.type];
   }
   const auto heading = [](const char* word, Use use) {
@@ -195,6 +214,10 @@ void PublishedRules::describe(Fields& f) {
       .doc("published airspace that takes a permission: closed, or ignored because you have it");
   f("inform", inform, {{"keep_out", Use::keep_out}, {"skip", Use::skip}})
       .doc("published airspace that only informs");
+  f("permitted", permitted)
+      .doc(
+          "identifiers or names of zones of published airspace that are open, because you have "
+          "the permission that they take");
   f("qnh_hpa", qnh_hpa)
       .unit("hPa")
       .range(850, 1100)
@@ -211,6 +234,11 @@ std::vector<formats::Point2> corners_in_use(const formats::Airspace& airspace,
 
 Published published_zones(const formats::Airspace& airspace, const PublishedRules& rules,
                           const Site& site, double horizon_s, bool in_time, Clip* clip) {
+  for (const std::string& called : rules.permitted) {
+    if (const std::string why = formats::permission_problem(airspace.zones, called); !why.empty()) {
+      throw ParameterError("permitted", why);
+    }
+  }
   Published published;
   Converter converter(rules, site, clip);
   std::size_t volumes = 0;
@@ -238,6 +266,9 @@ Published published_zones(const formats::Airspace& airspace, const PublishedRule
                          std::to_string(airspace.zones.size()) + " zones of " +
                          std::to_string(volumes) + " volumes read",
                      mapping(airspace, rules)};
+  if (const std::string names = opened(airspace, rules); !names.empty()) {
+    published.notes.push_back(names);
+  }
   const std::vector<std::string> more = converter.notes();
   published.notes.insert(published.notes.end(), more.begin(), more.end());
   published.notes.insert(published.notes.end(), airspace.notes.begin(), airspace.notes.end());

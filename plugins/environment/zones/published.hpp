@@ -18,6 +18,7 @@ struct PublishedRules {
   enum class Use { keep_out, skip };
   Use ask = Use::keep_out;
   Use inform = Use::skip;
+  std::vector<std::string> permitted;  ///< zones, as they are called, that take a permission
   double qnh_hpa = 1013.25;
 
   void describe(Fields& f);

@@ -280,6 +280,61 @@ TEST_F(Published, ClassesAreMappedAndPrinted) {
   EXPECT_FALSE(free(*other, 480));
 }
 
+TEST_F(Published, APermissionOpensTheZoneOfThatName) {
+  const auto square = [](double west) {
+    return Corners{{west, 0}, {west + 100, 0}, {west + 100, 100}, {west, 100}};
+  };
+  const std::string text = openair("CTR", "Town (1/2)", "GND", "UNL", square(0)) +
+                           openair("CTR", "Town (2/2)", "GND", "UNL", square(200)) +
+                           openair("P", "Jail", "GND", "UNL", square(400));
+  const auto free = [](const Environment& layer, double x) {
+    return !layer.blocked({x, 40, 50}, {x, 40, 50}, 0);
+  };
+  const auto layer = zones(text, ", permitted: ['Town (2/2)']", site());
+  EXPECT_FALSE(free(*layer, 50));
+  EXPECT_TRUE(free(*layer, 250));
+  EXPECT_FALSE(free(*layer, 450));
+  EXPECT_TRUE(says(*layer, "keep out (closed): 1 P; ask (closed): 1 CTR"));
+  EXPECT_TRUE(says(*layer, "open by a permission: 'Town (2/2)'"));
+  EXPECT_TRUE(says(*zones(text, ", ask: skip", site()),
+                   "open by a permission: 'Town (1/2)', 'Town (2/2)'"));
+  const auto refusal = [&](const std::string& called) -> std::string {
+    try {
+      zones(text, ", permitted: ['" + called + "']", site());
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal("town").find("no zone is called 'town'; did you mean 'Town (1/2)', "
+                                 "'Town (2/2)'?"),
+            std::string::npos);
+  EXPECT_NE(refusal("Jail").find("no permission opens 'Jail' (P): it stays closed"),
+            std::string::npos);
+}
+
+// Against points: in no direction nearer than the buffer, on steep ground too.
+TEST_F(Published, ABufferIsKeptFromLimitsAboveGround) {
+  const std::string text = openair("R", "Zone", "GND", "60M AGL", kConcave);
+  const auto plain = zones(text);
+  const auto layer = zones(text, ", buffer_m: 40", site());
+  RandomStream random(5);
+  int open = 0;
+  for (int n = 0; n < 300; ++n) {
+    const Vec3 p(random.uniform(100, 1700), random.uniform(200, 1700), random.uniform(0, 600));
+    if (layer->blocked(p, p, 0)) {
+      continue;
+    }
+    ++open;
+    for (int k = 0; k < 40; ++k) {
+      const Vec3 way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const Vec3 near = p + way.normalized() * 39.9;
+      EXPECT_FALSE(plain->blocked(near, near, 0));
+    }
+  }
+  EXPECT_GT(open, 50);
+}
+
 TEST_F(Published, FlightLevelsDependOnThePressure) {
   const std::string text = openair("R", "Zone", "FL50", "UNL", {{0, 0}, {100, 0}, {100, 100}});
   const Vec3 p(80, 40, 1500);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -9,6 +11,8 @@
 #include "altiplan/kit/layers/hours.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
+#include "altiplan/swept_volume.hpp"
+#include "altiplan/what_blocks.hpp"
 #include "altiplan/world.hpp"
 #include "clip.hpp"
 #include "ground_zones.hpp"
@@ -92,6 +96,7 @@ struct Params {
   FileRules rules;
   PublishedRules published;
   KeepInRule keep_in = KeepInRule::any;
+  double buffer_m = 0;
   bool clip = false;
   double horizon_s = 3600;
   bool in_time = false;
@@ -110,6 +115,12 @@ struct Params {
         .doc(
             "of several keep_in zones the vehicle must be in one (any), or in every one (all), as "
             "autopilots ask of a fence");
+    f("buffer_m", buffer_m)
+        .unit("m")
+        .range(0, 100000)
+        .doc(
+            "distance to keep from each zone, in any direction: from keep_out zones outside, from "
+            "the border of keep_in zones inside");
     f("clip", clip)
         .doc(
             "drop keep-out zones outside the world's bounds (the volume, else the preceding "
@@ -126,10 +137,19 @@ struct Params {
             "the judge and the planner sipp hold each leg to the keep-out zones that are active "
             "while it is flown; all else keeps out of the zones above at all times");
     f.check(!list.empty() || file.has_value(), "give zones in list, in file or in both");
+    f.check(published.permitted.empty() || file.has_value(),
+            "permitted names zones of published airspace: give its file");
   }
 };
 
-class Zones : public Environment {
+/// "12.5 m"
+std::string metres(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g m", value);
+  return text;
+}
+
+class Zones : public Environment, public WhatBlocks {
  public:
   Zones(const Params& params, const Site& site) : Zones(Reader(params, site)) {}
 
@@ -149,6 +169,7 @@ class Zones : public Environment {
     std::vector<std::vector<Shape>> keep_in;  ///< the parts of each zone
     std::vector<bool> keep_in_lasts;          ///< true of one that is active all the time
     KeepInRule rule = KeepInRule::any;
+    double buffer_m = 0;
     std::vector<GroundPrism> above_ground;
     std::vector<std::string> above_ground_names;
     Drawing drawing;
@@ -163,7 +184,8 @@ class Zones : public Environment {
         : site(where),
           horizon_s(params.horizon_s),
           in_time(params.in_time && where.has_start_time),
-          rule(params.keep_in) {
+          rule(params.keep_in),
+          buffer_m(params.buffer_m) {
       drawing.keeps_in_all = rule == KeepInRule::all;
       if (params.file) {
         try {
@@ -186,6 +208,9 @@ class Zones : public Environment {
           std::to_string(keep_in.size()) + " keep-in zones" +
           (keep_in.size() > 1 && drawing.keeps_in_all ? ", to be in all of them, " : ", ") +
           std::to_string(inactive) + " not active");
+      if (buffer_m > 0) {
+        notes.push_back(metres(buffer_m) + " are kept from each of them");
+      }
       if (two_readings > 0) {
         notes.push_back(
             "an edge over more than half of the Earth can be read either way around in " +
@@ -255,6 +280,7 @@ class Zones : public Environment {
       some.horizon_s = horizon_s;
       some.frame = frame;
       some.rule = rule;
+      some.buffer_m = buffer_m;
       some.drawing.keeps_in_all = drawing.keeps_in_all;
       for (std::size_t n = 0, drawn = 0; n < keep_out.size(); ++n, ++drawn) {
         while (drawing.shapes[drawn].role == Drawn::Role::keep_in) {
@@ -355,7 +381,11 @@ class Zones : public Environment {
       }
       std::optional<Clip> clip;
       if (params.clip) {
-        clip.emplace(site);
+        clip.emplace(site, buffer_m);
+      }
+      if (!file.airspace && !params.published.permitted.empty()) {
+        throw ParameterError(
+            "permitted", name + ": is no published airspace: no permission opens " + "its zones");
       }
       if (file.airspace) {
         add_published(*file.airspace, params, clip ? &*clip : nullptr);
@@ -477,7 +507,7 @@ class Zones : public Environment {
         const auto& cylinder = std::get<Cylinder>(shapes.front());
         const double middle = std::isfinite(floor + ceiling) ? (floor + ceiling) / 2 : 0;
         threats.push_back({{cylinder.x, cylinder.y, middle},
-                           cylinder.radius,
+                           cylinder.radius + buffer_m,
                            "zone",
                            zone.id.empty() ? "zone_" + std::to_string(n) : zone.id});
       }
@@ -488,14 +518,17 @@ class Zones : public Environment {
       : keep_out_(std::move(reader.keep_out)),
         keep_in_(reader.kept_in()),
         above_ground_(*reader.site.before, std::move(reader.above_ground)),
-        over_approximation_(above_ground_.over_approximation(reader.site.vehicle.radius_m)),
+        buffer_(reader.buffer_m),
+        over_approximation_(
+            above_ground_.over_approximation(reader.site.vehicle.radius_m + buffer_)),
         drawing_(std::move(reader.drawing)),
         above_ground_names_(std::move(reader.above_ground_names)),
         info_{std::move(reader.frame), {}, std::move(reader.threats), std::move(reader.notes)} {}
 
  private:
   Box do_bounds() const override {
-    return keep_in_.empty() ? keep_out_.bounds().united(above_ground_.bounds()) : Box{};
+    return keep_in_.empty() ? keep_out_.bounds().united(above_ground_.bounds()).grown(buffer_)
+                            : Box{};
   }
   double do_clearance(const Vec3& p) const override {
     double nearest = keep_out_.clearance(p);
@@ -505,14 +538,21 @@ class Zones : public Environment {
     for (const KeepIn& zones : keep_in_) {
       nearest = std::min(nearest, zones.clearance(p));
     }
-    return nearest;
+    return nearest - buffer_;
   }
-  bool do_blocked(const Vec3& a, const Vec3& b, double r) const override {
+  bool do_blocked(const Vec3& a, const Vec3& b, double radius) const override {
+    const double r = radius + buffer_;
     return keep_out_.blocked(a, b, r) || above_ground_.blocked(a, b, r) ||
            std::any_of(keep_in_.begin(), keep_in_.end(),
                        [&](const KeepIn& zones) { return zones.blocked(a, b, r); });
   }
-  void do_near(const Vec3& p, double reach, const NearSink& sink) const override {
+  void do_near(const Vec3& p, double to_buffer, const NearSink& to) const override {
+    const double reach = to_buffer + buffer_;
+    const auto sink = [&](Nearby nearby) {
+      nearby.point += nearby.normal * buffer_;
+      nearby.distance -= buffer_;
+      to(nearby);
+    };
     keep_out_.near(p, reach, sink);
     const int count = static_cast<int>(keep_out_.shapes().size());
     above_ground_.near(p, reach, count, sink);
@@ -526,6 +566,23 @@ class Zones : public Environment {
     }
   }
   void do_rasterize(VoxelGrid& grid) const override {
+    if (buffer_ == 0) {
+      rasterize_grown(grid);
+      return;
+    }
+    GridSpec spec = grid.spec();
+    spec.inflation += buffer_;
+    VoxelGrid grown(spec);
+    grown.watch([&grid] { grid.ask_watch(); });
+    rasterize_grown(grown);
+    for (int k = 0; k < spec.counts[2]; ++k) {
+      for (int j = 0; j < spec.counts[1]; ++j) {
+        grown.for_each_run(j, k, [&](int first, int last) { grid.block_run(first, last, j, k); });
+      }
+    }
+  }
+  /// The zones, grown by the grid's inflation.
+  void rasterize_grown(VoxelGrid& grid) const {
     keep_out_.rasterize(grid);
     above_ground_.rasterize(grid);
     for (const KeepIn& zones : keep_in_) {
@@ -545,14 +602,27 @@ class Zones : public Environment {
     return drawing_;
   }
   bool do_meets(const SweptVolume& volume) const override {
+    if (buffer_ > 0) {
+      return meets_by_clearance(
+          volume, [this](const Vec3& p) { return do_clearance(p); }, kBodyTolerance);
+    }
     return keep_out_.meets(volume) || above_ground_.meets(volume) ||
            std::any_of(keep_in_.begin(), keep_in_.end(),
                        [&](const KeepIn& zones) { return zones.meets(volume); });
   }
 
+  std::string do_what_blocks(const Vec3&, const Vec3&, double distance) const override {
+    const double away = distance + buffer_;
+    return buffer_ > 0 ? metres(std::abs(away)) +
+                             (away < 0 ? " beyond a zone's border" : " from a zone's border") +
+                             ", from which " + metres(buffer_) + " are kept"
+                       : "";
+  }
+
   kit::ObstacleSet keep_out_;
   std::vector<KeepIn> keep_in_;  ///< each must hold the vehicle
   GroundZones above_ground_;
+  double buffer_;  ///< metres that are kept from all of them
   double over_approximation_;
   mutable Drawing drawing_;
   mutable std::once_flag is_drawn_;

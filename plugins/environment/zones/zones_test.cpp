@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "altiplan/voxel_grid.hpp"
 #include "altiplan/world.hpp"
 #include "support/support.hpp"
 
@@ -77,6 +78,56 @@ TEST(Zones, PolygonWithAHoleIsFreeInTheHole) {
   EXPECT_NEAR(layer->clearance({20, 50, -1e5}), -20, 1e-9);
   EXPECT_FALSE(layer->blocked({45, 45, 0}, {55, 55, 900}, 5));
   EXPECT_TRUE(layer->blocked({45, 45, 0}, {55, 55, 900}, 5.1));
+}
+
+TEST(Zones, ABufferIsKeptFromAllZones) {
+  const std::string out = "list: [{id: tower, cylinder: {at_m: [100, 200], radius_m: 50}}]}";
+  const auto plain = zones("{" + out);
+  const auto layer = zones("{buffer_m: 30, " + out);
+  EXPECT_NEAR(layer->clearance({200, 200, 0}), 20, 1e-9);
+  EXPECT_TRUE(layer->blocked({190, 0, 0}, {190, 400, 0}, 10.1));
+  EXPECT_FALSE(layer->blocked({190, 0, 0}, {190, 400, 0}, 10));
+  EXPECT_EQ(layer->bounds().max.x(), 180);
+  EXPECT_EQ(layer->info().threats[0].radius, 80);
+  EXPECT_EQ(std::get<Cylinder>(layer->drawing()->shapes[0].shape).radius, 50) << "as published";
+  layer->near({200, 200, 0}, 20, [&](const Nearby& near) {
+    EXPECT_NEAR(near.distance, 20, 1e-9);
+    EXPECT_NEAR(near.point.x(), 180, 1e-9);
+  });
+  GridSpec spec{{0, 0, 0}, {10, 10, 10}, {30, 40, 1}};
+  VoxelGrid grown(spec);
+  layer->rasterize(grown);
+  spec.inflation = 30;
+  VoxelGrid inflated(spec);
+  plain->rasterize(inflated);
+  EXPECT_EQ(grown.words(), inflated.words());
+}
+
+TEST(Zones, ABufferIsKeptInsideFences) {
+  const auto layer = zones(
+      "{buffer_m: 20, list: [{kind: keep_in, floor_m: 0, ceiling_m: 100, polygon: {outline_m: "
+      "[[0, 0], [100, 0], [100, 100], [0, 100]]}}]}");
+  EXPECT_NEAR(layer->clearance({50, 50, 50}), 30, 1e-9);
+  EXPECT_FALSE(layer->blocked({50, 20, 50}, {50, 80, 50}, 0));
+  EXPECT_TRUE(layer->blocked({50, 20, 50}, {50, 81, 50}, 0));
+  EXPECT_TRUE(layer->blocked({50, 50, 50}, {50, 50, 81}, 0)) << "the ceiling has one too";
+}
+
+TEST(Zones, ClippingKeepsWhatABufferReaches) {
+  Site site = site_of();
+  site.volume = {{0, 0, 0}, {100, 100, 100}};
+  const auto layer =
+      zones("{clip: true, buffer_m: 30, file: " +
+                written("beyond", R"({"type": "FeatureCollection", "features": [)" +
+                                      feature("[[[0.002, 0], [0.003, 0], [0.003, 0.001], [0.002, "
+                                              "0.001], [0.002, 0]]]") +
+                                      "]}") +
+                "}",
+            [&] {
+              site.frame = Frame::local({0.0009, 0});
+              return site;
+            }());
+  EXPECT_TRUE(layer->blocked({95, 50, 50}, {95, 60, 50}, 0)) << "22 m east of the bounds";
 }
 
 TEST(Zones, KeepInBlocksAllOutsideOfTheUnion) {

@@ -75,6 +75,13 @@ struct ALTIPLAN_API Zone {
   bool keeps_in() const { return restriction == Restriction::keep_in; }
   /// "EGD901 (TEST DANGER)"
   std::string label() const;
+  /// True if that is its identifier, its name or its label.
+  bool is_called(const std::string& text) const {
+    return !text.empty() && (text == id || text == name || text == label());
+  }
+  bool takes_permission() const {
+    return restriction == Restriction::ask || restriction == Restriction::inform;
+  }
   /// True if the zone is active at some time of [from, until]. Hours that depend on the sun are
   /// taken at the middle of the zone, longer at both ends by two minutes and by what the sun takes
   /// to cross the zone; where it does not rise or set, for the whole day.
@@ -88,6 +95,11 @@ struct NamedPoint {
   std::string name;
   Point2 at{0, 0};  ///< longitude, latitude
 };
+
+/// Why a permission for the zones that are called so opens nothing: none is, with the nearest
+/// names, or none of them takes a permission. "" if one does.
+ALTIPLAN_API std::string permission_problem(const std::vector<Zone>& zones,
+                                            const std::string& called);
 
 /// All corners of the zones' outlines, and the centres of circles.
 ALTIPLAN_API std::vector<Point2> corners_of(const std::vector<Zone>& zones);
