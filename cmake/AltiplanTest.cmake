@@ -7,7 +7,7 @@ set(ALTIPLAN_SLOW_TESTS
   environment_terrain framework_body_turns framework_many_corners framework_obstacle_tree
   framework_shape framework_swept_volume host_report host_watchdog host_worker_pool_limits
   host_worker_pool_parent host_yaml local_planner_velocity_field pipelines_every_pipeline
-  pipelines_fusion_flights pipelines_profiles planner_anya planner_dstar_lite
+  pipelines_fusion_flights planner_anya planner_dstar_lite
   planner_lazy_theta_star planner_ompl planner_stratified_theta reference_colony_oracle
   reference_earth reference_random_colonies reference_zone_maps)
 
