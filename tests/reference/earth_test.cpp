@@ -205,13 +205,11 @@ bool holds(const std::vector<Polygon>& parts, double x, double y) {
   }
   return false;
 }
-}  // namespace
-
-TEST(Earth, RingsHoldWhatIsInsideThem) {
+void expect_rings_hold_what_is_inside_them(std::size_t rings) {
   RandomStream random(4);
   std::size_t wrong = 0;
   std::size_t inside = 0;
-  for (int n = 0; n < 25'000; ++n) {
+  for (std::size_t n = 0; n < rings; ++n) {
     LonLat about = random_place(random);
     about[1] = std::clamp(about[1], -89.0, 89.0);
     const double size = random.uniform(0.01, 0.3);
@@ -227,17 +225,17 @@ TEST(Earth, RingsHoldWhatIsInsideThem) {
     wrong += edge_m > kMillimetre && holds(parts, 0, 0) != expected;
   }
   EXPECT_EQ(wrong, 0u);
-  EXPECT_GT(inside, 5'000u);
+  EXPECT_GT(inside, rings / 5);
 }
 
-TEST(Earth, AreasOfRings) {
+void expect_areas_of_rings(int rings) {
   if (!has_tools()) {
     GTEST_SKIP() << "needs Planimeter";
   }
   RandomStream random(5);
   std::string lines;
   std::vector<double> areas;
-  for (int n = 0; n < 1'000; ++n) {
+  for (int n = 0; n < rings; ++n) {
     LonLat about = random_place(random);
     about[1] = std::clamp(about[1], -88.0, 88.0);
     const Ring ring = random_ring(random, about, 0.05);
@@ -274,6 +272,13 @@ TEST(Earth, AreasOfRings) {
   EXPECT_TRUE(found);
   EXPECT_EQ(wrong, 0u);
 }
+}  // namespace
+
+TEST(Earth, RingsHoldWhatIsInsideThem) { expect_rings_hold_what_is_inside_them(4'000); }
+TEST(NightlyEarth, RingsHoldWhatIsInsideThem) { expect_rings_hold_what_is_inside_them(25'000); }
+
+TEST(Earth, AreasOfRings) { expect_areas_of_rings(100); }
+TEST(NightlyEarth, AreasOfRings) { expect_areas_of_rings(1'000); }
 
 TEST(Earth, EdgesOverMoreThanHalfOfTheEarth) {
   struct Case {

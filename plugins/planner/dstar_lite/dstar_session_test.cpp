@@ -85,7 +85,7 @@ void run_sequence(const Setting& setting, std::uint64_t seed) {
   }
 }
 
-TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) {
+void run_random_edits(std::uint64_t from, std::uint64_t to) {
   const Setting settings[] = {
       {},
       {.with = "{moves: cells, corner: free_box}"},
@@ -98,10 +98,13 @@ TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) {
        .with = "{moves: cells, corner: free_box}"},
       {.with = "{moves: exact}"},
   };
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+  for (std::uint64_t seed = from; seed < to; ++seed) {
     ASSERT_NO_FATAL_FAILURE(run_sequence(settings[seed % std::size(settings)], seed)) << seed;
   }
 }
+
+TEST(DStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) { run_random_edits(0, 200); }
+TEST(NightlyDStarLiteSession, EqualsPlanningAfreshAfterRandomEdits) { run_random_edits(200, 1000); }
 
 /// Nearly all that is known relies on the cells before the goal.
 TEST(DStarLiteSession, PlansAfreshWhereARepairTakesLongerAndGoesOnWithItLater) {
@@ -141,7 +144,7 @@ TEST(DStarLiteSession, PlansAfreshWhereARepairTakesLongerAndGoesOnWithItLater) {
   EXPECT_EQ(expanded(flown.result()), 0);
 }
 
-TEST(DStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
+void run_edits_under_limits_on_turns(std::uint64_t from, std::uint64_t to) {
   const char* by_heading = "{moves: cells, state: cell_and_heading}";
   const Setting settings[] = {
       {.counts = {9, 8, 5}, .max_turn = 0.9, .afresh = by_heading},
@@ -153,9 +156,16 @@ TEST(DStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
        .max_turn = 1.0,
        .afresh = "{moves: exact, state: cell_and_heading}"},
   };
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = from; seed < to; ++seed) {
     ASSERT_NO_FATAL_FAILURE(run_sequence(settings[seed % std::size(settings)], seed)) << seed;
   }
+}
+
+TEST(DStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
+  run_edits_under_limits_on_turns(0, 40);
+}
+TEST(NightlyDStarLiteSession, EqualsPlanningAfreshUnderLimitsOnTurns) {
+  run_edits_under_limits_on_turns(40, 200);
 }
 
 TEST(DStarLiteSession, NoChangeExpandsNothing) {

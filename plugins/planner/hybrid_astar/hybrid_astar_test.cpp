@@ -18,11 +18,17 @@ TEST(HybridAstar, RoutesAmongTowersAreValidInCalmAndWind) {
 }
 
 TEST(HybridAstar, JoinsLegsTangentiallyInLayersOfWind) {
-  testing::expect_no_corners_in_layers("hybrid_astar", "{}", 8, 20'000);
+  testing::expect_no_corners_in_layers("hybrid_astar", "{}", 20'000);
 }
 
 TEST(HybridAstar, LeavesAndJoinsLoiterCirclesTangentially) {
   testing::expect_loiter_circles_left_and_joined("hybrid_astar", 0.8, 20'000);
+}
+
+TEST(NightlyHybridAstar, IsHeldToMore) {
+  testing::expect_valid_routes_among_towers("hybrid_astar", "{}", 0.8, 20'000, 40);
+  testing::expect_no_corners_in_layers("hybrid_astar", "{}", 20'000, 24);
+  testing::expect_loiter_circles_left_and_joined("hybrid_astar", 0.8, 20'000, 30);
 }
 
 TEST(HybridAstar, BetweenLoiterCirclesInTheOpenItIsNoLongerThanTheTangent) {

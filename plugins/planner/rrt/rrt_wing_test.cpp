@@ -13,11 +13,17 @@ TEST(RrtWing, RoutesAmongTowersAreValidInCalmAndWind) {
 }
 
 TEST(RrtWing, JoinsLegsTangentiallyInLayersOfWind) {
-  testing::expect_no_corners_in_layers("rrt", "{}", 8, 20'000);
+  testing::expect_no_corners_in_layers("rrt", "{}", 20'000);
 }
 
 TEST(RrtWing, LeavesAndJoinsLoiterCirclesTangentially) {
   testing::expect_loiter_circles_left_and_joined("rrt", 0.8, 20'000);
+}
+
+TEST(NightlyRrtWing, IsHeldToMore) {
+  testing::expect_valid_routes_among_towers("rrt", "{}", 0.8, 20'000, 40);
+  testing::expect_no_corners_in_layers("rrt", "{}", 20'000, 24);
+  testing::expect_loiter_circles_left_and_joined("rrt", 0.8, 20'000, 30);
 }
 
 TEST(RrtWing, ReportsAWindThatItCannotFlyIn) { testing::expect_a_wind_too_strong_reported("rrt"); }

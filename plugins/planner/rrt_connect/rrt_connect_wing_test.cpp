@@ -15,7 +15,7 @@ TEST(RrtConnectWing, RoutesAmongTowersAreValidInCalmAndWind) {
 }
 
 TEST(RrtConnectWing, JoinsLegsTangentiallyInLayersOfWind) {
-  testing::expect_no_corners_in_layers("rrt_connect", "{}", 8, 8'000);
+  testing::expect_no_corners_in_layers("rrt_connect", "{}", 8'000);
 }
 
 TEST(RrtConnectWing, ReportsAWindThatItCannotFlyIn) {
@@ -24,6 +24,12 @@ TEST(RrtConnectWing, ReportsAWindThatItCannotFlyIn) {
 
 TEST(RrtConnectWing, LeavesAndJoinsLoiterCirclesTangentially) {
   testing::expect_loiter_circles_left_and_joined("rrt_connect", 0.9, 5'000);
+}
+
+TEST(NightlyRrtConnectWing, IsHeldToMore) {
+  testing::expect_valid_routes_among_towers("rrt_connect", "{}", 0.9, 8'000, 40);
+  testing::expect_no_corners_in_layers("rrt_connect", "{}", 8'000, 24);
+  testing::expect_loiter_circles_left_and_joined("rrt_connect", 0.9, 5'000, 30);
 }
 
 TEST(RrtConnectWing, BetweenLoiterCirclesInTheOpenItIsNoLongerThanTheTangent) {
