@@ -73,3 +73,23 @@ function(altiplan_add_test program name)
     set_tests_properties(${name}_nightly PROPERTIES LABELS nightly TIMEOUT 7200)
   endif()
 endfunction()
+
+# altiplan_add_python_test(NAME FILE ARGUMENT…): FILE as the test NAME; where it leaves something to the night
+# (tests/support/night.py), NAME_nightly is all of it. Exit code 77: it cannot run here.
+function(altiplan_add_python_test name file)
+  altiplan_add_day_and_night(${name} ${file} /usr/bin/python3 ${file} ${ARGN})
+endfunction()
+
+# altiplan_add_day_and_night(NAME FILE COMMAND…): the same with a command that runs FILE.
+function(altiplan_add_day_and_night name file)
+  add_test(NAME ${name} COMMAND ${ARGN})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(STRINGS ${file} left_to_the_night REGEX "NIGHTLY|@by_night|by_day")
+  if(left_to_the_night)
+    set_tests_properties(${name} PROPERTIES COST 10)  # among the first: it takes long by day, too
+    add_test(NAME ${name}_nightly COMMAND ${ARGN})
+    set_tests_properties(${name}_nightly PROPERTIES TIMEOUT 3600 SKIP_RETURN_CODE 77 LABELS nightly
+      ENVIRONMENT ALTIPLAN_NIGHTLY=1)
+  endif()
+endfunction()

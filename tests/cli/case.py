@@ -4,11 +4,15 @@
 The arguments of each test are PROGRAM and BROKEN, the folder of the unusable libraries."""
 import json
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import by_day, by_night  # noqa: E402, F401
 
 PROGRAM, BROKEN = sys.argv[1:3]
 

@@ -7,7 +7,7 @@ import re
 import sys
 import unittest
 
-from plan_case import POINTS, PROGRAM, SOURCES, TERRAIN, PlanCase, item, plan_of
+from plan_case import POINTS, PROGRAM, SOURCES, TERRAIN, PlanCase, by_day, item, plan_of
 
 UTM = """PROJCS["WGS 84 / UTM zone 11N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],
 PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],
@@ -161,7 +161,7 @@ class CheckPlan(PlanCase):
         options = ("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json")
         # East of the last item, where its circle goes and no leg does.
         self.zones("z.json", self.around(-84.1944, 36.66, 0.001), 3000)
-        for command, params in ((17, [0, 0, 500, 0]), (18, [3, 0, -500, 0]), (31, [1, 500, 0, 1])):
+        for command, params in by_day([(18, [3, 0, -500, 0]), (17, [0, 0, 500, 0]), (31, [1, 500, 0, 1])], 3):
             loiter = item(high[3], 4)
             self.write([*(item(point, n + 1) for n, point in enumerate(high[:3])), loiter], vehicleType=1)
             # ArduPilot's aeroplane goes home at the end.

@@ -12,7 +12,7 @@ import subprocess
 import time
 
 import case
-from case import BROKEN, CliCase, PIPELINE, PROGRAM, SCENARIO
+from case import BROKEN, CliCase, PIPELINE, PROGRAM, SCENARIO, by_day
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 BAD_FILES = os.path.join(ROOT, "tests", "bad_files")
@@ -231,7 +231,7 @@ class Cli(CliCase):
         sample = bad_files()[::10]
         self.assertGreaterEqual(len(sample), 40)
         self.write("result.json", "before")
-        for row, file, before, after, problems in sample:
+        for row, file, before, after, problems in by_day(sample, 4):
             for name in ("pipeline.yaml", "scenario.yaml", "ground.asc", "zones.geojson",
                          "study.yaml"):
                 with open(os.path.join(BAD_FILES, name), "rb") as stream:

@@ -9,6 +9,9 @@ import tempfile
 import unittest
 import urllib.parse
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import NIGHTLY, by_night  # noqa: E402, F401
+
 PROGRAM = sys.argv[1]
 
 SCENARIO = """# The world of this test.

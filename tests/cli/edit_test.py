@@ -14,10 +14,10 @@ import sys
 import time
 import unittest
 
-from edit_session import PIPELINE, PROGRAM, SCENARIO, EditCase
+from edit_session import NIGHTLY, PIPELINE, PROGRAM, SCENARIO, EditCase
 
 SOURCES = sys.argv[2]
-CHANGES = int(sys.argv.pop(3)) if len(sys.argv) > 3 and sys.argv[3].isdigit() else 150
+CHANGES = int(sys.argv.pop(3)) if len(sys.argv) > 3 and sys.argv[3].isdigit() else 150 if NIGHTLY else 50
 
 
 class Edit(EditCase):

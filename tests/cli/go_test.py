@@ -12,10 +12,15 @@ import sys
 import tempfile
 import unittest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import by_day  # noqa: E402
+
 PROGRAM, SOURCES = sys.argv[1:3]
 DATA = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", f"{SOURCES}/../shared/data"))
 TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
 ENDS = ["--from", "-84.38,36.48", "--to", "-84.20,36.62"]
+NEAR = ["--from", "-84.32,36.52", "--to", "-84.28,36.57"]  # within WALL and without
+VALLEY = ["--from", "-84.38,36.48", "--to", "-84.36,36.50"]
 UTM = ('PROJCS["WGS 84 / UTM zone 11N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,'
        '298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],'
        'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'
@@ -38,7 +43,10 @@ def box(west, south, size):
             [west, south]]
 
 
-WALL = [[-84.5, 36.54], [-84.0, 36.54], [-84.0, 36.56], [-84.5, 36.56], [-84.5, 36.54]]
+# Four sides around a place, so that a search soon knows that there is no way.
+WALL = [[[x, y], [x + wide, y], [x + wide, y + high], [x, y + high], [x, y]] for x, y, wide, high in (
+    (-84.34, 36.51, 0.04, 0.004), (-84.34, 36.526, 0.04, 0.004), (-84.34, 36.51, 0.004, 0.02),
+    (-84.304, 36.51, 0.004, 0.02))]
 
 
 class Go(unittest.TestCase):
@@ -109,7 +117,7 @@ class Go(unittest.TestCase):
         pairs = [(TERRAIN, "-84.31,36.48", "-84.136,36.70")]
         if steep.is_file():
             pairs.append((str(steep), "10.73,46.55", "10.75,46.78"))
-        for terrain, start, goal in pairs:
+        for terrain, start, goal in by_day(pairs, 2):
             def length(*options):
                 folder = f"{len(list(self.folder.iterdir()))}"
                 self.call("go", "--terrain", terrain, "--from", start, "--to", goal, "--max-agl",
@@ -138,8 +146,7 @@ class Go(unittest.TestCase):
         self.call("check", "wing/route.plan", "--terrain", TERRAIN, "--min-agl", "50")
 
     def test_a_wing_whose_circle_at_the_goal_is_too_low(self):
-        out, _ = self.call("go", "--terrain", TERRAIN, "--from", "-84.35,36.50", "--to", "-84.15,36.65",
-                           "--wing", "80", "-o", "low_circle", code=1)
+        out, _ = self.call("go", "--terrain", TERRAIN, *VALLEY, "--wing", "80", "-o", "low_circle", code=1)
         self.assertIn("check: fail, flown by ArduPilot plane", out)
         self.assertIn("its circle: the height above ground is", out)
 
@@ -163,10 +170,10 @@ class Go(unittest.TestCase):
         self.assertLess(minutes[1], 0.75 * minutes[0])
         (self.folder / "less.param").write_text("AIRSPEED_MIN,18\nAIRSPEED_CRUISE,-5\n")
         (self.folder / "p.param").write_text("AIRSPEED_MIN,18\nAIRSPEED_CRUISE,22\nAIRSPEED_MAX,30\n")
-        wing = ["go", *ends, "--wing", "80", "--speed", "22"]
-        out, _ = self.call(*wing, "--wind", "5,0", "-o", "unknown", code=1)
+        wing = ["--wing", "80", "--speed", "22"]
+        out, _ = self.call("go", "--terrain", TERRAIN, *VALLEY, *wing, "--wind", "5,0", "-o", "unknown", code=1)
         self.assertIn("minimum airspeed, 9 m/s, is not judged: give its parameters (--params)", out)
-        out, _ = self.call(*wing, "--params", "p.param", "-o", "wing")
+        out, _ = self.call("go", *ends, *wing, "--params", "p.param", "-o", "wing")
         self.assertIn("check: pass", out)
         for options, code, said in ((["--wing", "30", "--speed", "40"], 3, "take a bank of 80 degrees"),
                                     (["--wind", "12,3"], 3, "not less than the speed, 10 m/s"),
@@ -180,9 +187,9 @@ class Go(unittest.TestCase):
         self.assertFalse((self.folder / "none").exists())
 
     def test_zones_at_their_hours(self):
-        self.zones("wall.geojson", WALL, **{"from": "2026-05-01T10:00:00Z",
+        self.zones("wall.geojson", *WALL, **{"from": "2026-05-01T10:00:00Z",
                                             "until": "2026-05-01T18:00:00Z"})
-        options = ["--terrain", TERRAIN, *ENDS, "--avoid", "wall.geojson"]
+        options = ["--terrain", TERRAIN, *NEAR, "--avoid", "wall.geojson"]
         out, _ = self.call("go", *options, code=1)
         self.assertIn("no route: ", out)
         _, err = self.call("go", *options, "--start-time", "2026-05-01T20:00:00Z")
@@ -210,18 +217,18 @@ class Go(unittest.TestCase):
         self.assertIn("empty.geojson: contains no zone", err)
 
     def test_why_there_is_no_route(self):
-        self.zones("wall.geojson", WALL, name="Wall")
+        self.zones("wall.geojson", *WALL, name="Wall")
         self.zones("ring.geojson", box(-84.39, 36.47, 0.02), name="Prison")
         for options, said in (
-                (["--avoid", "wall.geojson", "ring.geojson"], "reason: the start lies in 'Prison'"),
-                (["--avoid", "wall.geojson"], "reason: the zones close every way: without them a "
-                                              "route of 22.4"),
-                (["--avoid", "wall.geojson"], "is found, which enters 'Wall'\n"),
-                (["--min-agl", "50", "--max-agl", "52"], "reason: --max-agl is too low: up to 78 m a route of ")):
-            out, _ = self.call("go", "--terrain", TERRAIN, *ENDS, *options, code=1)
-            self.assertIn(said, out)
+                ([*ENDS, "--avoid", "wall.geojson", "ring.geojson"], r"reason: the start lies in 'Prison'"),
+                ([*NEAR, "--avoid", "wall.geojson"], r"reason: the zones close every way: without them a route of "
+                                                     r"6\.6\d* km is found, which enters 'Wall'\n"),
+                ([*NEAR, "--min-agl", "50", "--max-agl", "52"],
+                 r"reason: --max-agl is too low: up to 78 m a route of ")):
+            out, _ = self.call("go", "--terrain", TERRAIN, *options, code=1)
+            self.assertRegex(out, said)
         out, _ = self.call("go", "--terrain", TERRAIN, "--from", "-84.31,36.48", "--to",
-                           "-84.136,36.70", "--max-agl", "120", "--planner", "rrt_star", code=1)
+                           "-84.25,36.54", "--max-agl", "120", "--planner", "rrt_star", code=1)
         self.assertIn("reason: --planner rrt_star: without it a route of ", out)
         self.assertEqual(sorted(file.name for file in (self.folder / "jacksboro_fault").iterdir()),
                          ["pipeline.yaml", "result.json", "scenario.yaml"])

@@ -7,6 +7,9 @@ import sys
 import tempfile
 import unittest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import NIGHTLY, by_day, by_night  # noqa: E402, F401
+
 PROGRAM, SOURCES = sys.argv[1:3]
 TERRAIN = str(pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif")
 # Longitude, latitude, metres above sea level: north-east over the ridges.

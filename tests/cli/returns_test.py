@@ -12,7 +12,7 @@ import sys
 import unittest
 
 from dem_model import METRES, MODELS, Model, all_models, item, write_ridge
-from plan_case import PlanCase
+from plan_case import NIGHTLY, PlanCase
 
 COPTER, PLANE, PX4_COPTER, PX4_PLANE = (3, 2), (3, 1), (12, 2), (12, 1)
 
@@ -307,12 +307,15 @@ class Referee(PlanCase):
     @unittest.skipUnless(MODELS.is_dir(), "no test data: set ALTIPLAN_TEST_DATA")
     def test_no_return_is_passed_that_hits_the_ground(self):
         counts = {"hits": 0, "seconds": 0, "refused": 0}
-        for name, *place in self.PLACES:
+        for number, (name, *place) in enumerate(self.PLACES):
             model = Model(name)
             for kind, (vehicle, parameters) in enumerate(3 * self.KINDS):
+                if not NIGHTLY and (kind > 5 or kind % 2 != number):  # by day each kind once
+                    continue
                 self.judge(model, place, vehicle, parameters, random.Random(f"{name} {kind}"), counts)
-        self.assertGreater(counts["hits"], 300, counts)  # else it tells nothing
-        self.assertGreater(counts["seconds"] - counts["refused"], 300, counts)
+        enough = 300 if NIGHTLY else 100
+        self.assertGreater(counts["hits"], enough, counts)  # else it tells nothing
+        self.assertGreater(counts["seconds"] - counts["refused"], enough, counts)
 
     @unittest.skipUnless(MODELS.is_dir() and "ALTIPLAN_SECONDS" in os.environ, "of the night")
     def test_many_seconds_over_all_models(self):

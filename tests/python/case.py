@@ -11,6 +11,9 @@ import sys
 import tempfile
 import unittest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import NIGHTLY, by_day, by_night  # noqa: E402, F401
+
 PROGRAM, PLUGINS = sys.argv[1:3]
 SOURCES = pathlib.Path(sys.argv[3])
 PIPELINES = SOURCES / "configs/pipelines"

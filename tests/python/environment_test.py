@@ -3,8 +3,8 @@
 import unittest
 
 import numpy
-from case import SANITIZED
-from script_case import ScriptCase, main
+from case import NIGHTLY, SANITIZED, by_day
+from script_case import ScriptCase, few_by_day, main
 
 import altiplan
 
@@ -131,7 +131,7 @@ class Layers(ScriptCase):
     def test_wrong_layers(self):
         pipeline = self.write("p.yaml", "altiplan: 1\nscenario: s.yaml\nsteps: [{plan: rrt}]\n")
         self.write("s.yaml", SCENARIO.format(layers="- tested: {}"))
-        for body, says in WRONG.items():
+        for body, says in by_day(WRONG.items(), 2):
             with self.subTest(body=body):
                 self.layer(body)
                 is_of_the_files = "geographic" in says
@@ -160,13 +160,14 @@ class Layers(ScriptCase):
     @unittest.skipIf(SANITIZED, "limits of time")
     def test_a_new_environment(self):
         self.altiplan("new", "environment", "poles", "--python")
-        self.assertIn("0 failed", self.altiplan("check-plugin", "poles.py", "--time-limit", 300, "--jobs", 2).stdout)
+        done = self.altiplan("check-plugin", "poles.py", "--time-limit", 300, "--jobs", 2, *few_by_day)
+        self.assertIn("0 failed", done.stdout)
 
     @unittest.skipIf(SANITIZED, "limits of time")
     def test_ground_and_cells_keep_the_contract(self):
-        for body in (GROUND, "return altiplan.Cells([[[0, 1], [1, 0]]], 100)", IN_PYTHON):
+        for body in by_day([GROUND, "return altiplan.Cells([[[0, 1], [1, 0]]], 100)", IN_PYTHON], 3):
             self.layer(body)
-            done = self.altiplan("check-plugin", "tested.py", "--time-limit", 300, "--jobs", 2, "--rounds", 5)
+            done = self.altiplan("check-plugin", "tested.py", "--time-limit", 300, "--jobs", 2, "--rounds", 5 if NIGHTLY else 2)
             self.assertIn("0 failed", done.stdout)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """objective_test.py PROGRAM PLUGINS SOURCES: objectives written in Python are those of files."""
-from script_case import ScriptCase, main
+from script_case import ScriptCase, few_by_day, main
 
 HEAD = """import altiplan
 
@@ -91,7 +91,7 @@ class Objectives(ScriptCase):
 
     def test_one_to_begin_with(self):
         self.altiplan("new", "objective", "towns", "--python")
-        self.altiplan("check-plugin", "towns.py", "--time-limit", 300)
+        self.altiplan("check-plugin", "towns.py", "--time-limit", 300, *few_by_day)
         self.assertIn("towns", self.altiplan("plugins").stdout)
 
 

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from case import HANGS_S, PROGRAM, SANITIZED
+from case import HANGS_S, NIGHTLY, PROGRAM, SANITIZED
 from script_case import AROUND, STEP, ScriptCase, main
 
 FAILS = {  # what plan does: what the result says, and its reason
@@ -59,7 +59,9 @@ BEGINS = "open('begun', 'w').close()\n"
 
 class Fails(ScriptCase):
     def test_every_fault(self):
-        for body, (says, reason) in FAILS.items():
+        by_day = {reason: body for body, (_, reason) in FAILS.items()}.values()  # one of each
+        for body in FAILS if NIGHTLY else by_day:
+            says, reason = FAILS[body]
             with self.subTest(body=body):
                 pipeline = self.planner(body)
                 result, _ = self.result(pipeline, "--set", "steps.0.within_s=0.5", code=4)

@@ -8,7 +8,7 @@ import sys
 import time
 
 import case
-from case import HANGS_S, PROGRAM, PythonCase
+from case import HANGS_S, NIGHTLY, PROGRAM, PythonCase
 
 HEAD = """import altiplan
 
@@ -24,6 +24,8 @@ class Tested:
     def plan(self, request):
         {body}
 """
+# Of check-plugin: whose tests each start an interpreter or two.
+few_by_day = [] if NIGHTLY else ["--rounds", 3, "--only", "library/|declared|sound|worse|agrees|costs|blocked|process"]
 STEP = "altiplan: 1\nscenario: scenario.yaml\nseed: 3\nsteps:\n  - {step}\n"
 AROUND = "[request.start, (300, 250, 100), (320, 250, 100), request.goal]"
 

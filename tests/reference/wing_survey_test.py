@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""wing_survey_test.py PROGRAM DATA SOURCES: `altiplan survey --wing` over hills of three models, in still air and in
+"""wing_survey_test.py PROGRAM DATA SOURCES: `altiplan survey --wing` over hills of three models (by day of the first), in still air and in
 wind. Rows are measured in models that are read a second time (ground_peer.py): within 5 % of the height of the photos,
 with no leg steeper than 10 degrees through the air. What the aeroplane cannot keep as it is flown is refused.
 
@@ -17,11 +17,14 @@ import numpy as np
 
 import ground_peer
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import by_day  # noqa: E402
+
 PROGRAM, DATA, SOURCES = sys.argv[1:4]
 DATA = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", DATA)) / "dem"
 JACKSBORO = pathlib.Path(SOURCES) / "configs/data/jacksboro_fault.tif"
-MODELS = [(JACKSBORO, (-84.12125, 36.6554)), (DATA / "N44W072.hgt", (-71.2166667, 44.78125)),
-          (DATA / "bigtujunga.tif", (-118.28954, 34.25279))]  # hills of 70 to 130 m
+MODELS = by_day([(JACKSBORO, (-84.12125, 36.6554)), (DATA / "N44W072.hgt", (-71.2166667, 44.78125)),
+                 (DATA / "bigtujunga.tif", (-118.28954, 34.25279))], 3)  # hills of 70 to 130 m
 FIELD = [(-270, -220), (230, -220), (280, 180), (-220, 140)]
 ISLAND = [(-30, -30), (30, -25), (10, 30)]
 WIND = 4

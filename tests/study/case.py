@@ -3,11 +3,16 @@
 import concurrent.futures
 import io
 import os
+import pathlib
 import shutil
 import sqlite3
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import by_day  # noqa: E402, F401
 
 # Buildings drawn anew by each seed.
 SCENARIO = """altiplan: 1

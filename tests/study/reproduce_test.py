@@ -12,6 +12,7 @@ import tempfile
 import time
 
 import case
+from case import by_day
 
 PROGRAM, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 
@@ -191,7 +192,7 @@ class Reproduce(case.StudyCase):
             self.assertGreater(paper["cpu_s"], paper["quick_cpu_s"])
 
     def test_words(self):
-        for word in ("001", "1", "01", "velocity_field", "001_velocity_field"):
+        for word in by_day(("001", "1", "01", "velocity_field", "001_velocity_field"), 3):
             rows = self.reproduce(word, "--row", "trap_entries")
             self.assertEqual(rows["trap_entries"]["ours"]["here"], "5")
         self.assertIn("no paper is named 'velocty_field' (altiplan reproduce --list shows all); did you mean "
@@ -302,8 +303,9 @@ class Reproduce(case.StudyCase):
 
     def test_cheap_rows(self):
         """Rows of the papers as documented, and one of a copy with another figure."""
-        for paper, *rows in (("000", "connect"), ("001", "length", "reduced_turn"),
-                             ("002", "astar", "w73", "bidirectional"), ("003", "simple_slicing"), ("004", "printed")):
+        for paper, *rows in by_day((("000", "connect"), ("001", "length", "reduced_turn"),
+                                    ("002", "astar", "w73", "bidirectional"), ("003", "simple_slicing"),
+                                    ("004", "printed")), 2):
             words = [word for row in rows for word in ("--row", row)]
             self.assertEqual(list(self.reproduce(paper, "--quick", *words)), rows)
         name = "001_velocity_field.yaml"

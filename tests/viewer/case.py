@@ -2,13 +2,18 @@
 """What the tests of the page have in common: how to open, click, point and read back."""
 import math
 import os
+import pathlib
 import re
+import sys
 import unittest
 
 import browser  # first: without Chromium it skips the program
 import scenes
 
 from selenium.webdriver import ActionChains
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import NIGHTLY  # noqa: E402, F401
 
 VIEWER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "viewer")
 with open(os.path.join(VIEWER, "dist", "viewer.html"), encoding="utf-8") as file:

@@ -13,7 +13,7 @@ import xml.etree.ElementTree as xml
 
 import reports
 import studies
-from reports import PROGRAM, Reports, report
+from reports import PROGRAM, Reports, by_night, report
 
 
 class Page(Reports):
@@ -88,6 +88,7 @@ class Page(Reports):
                          "astar: segmentation fault while planning " + studies.HOSTILE)
         self.assertIn("This run left no result", self.text("#panel"))
 
+    @by_night
     def test_a_run_without_a_route_has_no_profile(self):
         """Neither that of another pipeline of its pair; one with a route has its own."""
         for selector, name, profile in (
@@ -179,6 +180,7 @@ class Page(Reports):
         with open(os.path.join(self.report, "runs.csv"), newline="", encoding="utf-8") as file:
             self.assertEqual(len(list(csv.DictReader(file))), 18)
 
+    @by_night
     def test_without_times_it_is_the_same_again(self):
         made = [report(self.store, os.path.join(self.folder, name), "--no-times")
                 for name in ("one", "two")]
@@ -207,6 +209,7 @@ class Changed(Reports):
         with open(file, "a", encoding="utf-8") as out:
             out.write("# another line\n")
 
+    @by_night
     def test_what_has_changed_is_not_drawn(self):
         self.assertIn("pruned.yaml has changed since: 2 runs made before are not shown in 3-D.",
                       self.text("#method"))
@@ -286,6 +289,7 @@ class Imported(Reports):
         self.assertEqual(self.js("return document.querySelectorAll('#panel pre').length"), 0)
 
 
+@by_night
 class Variants(Reports):
     """A grid of 12 variants, with names as long as grids give them."""
     @classmethod

@@ -4,6 +4,7 @@
 The arguments of its tests are PROGRAM and MAKE_STORE; they are skipped without Chromium. With
 ALTIPLAN_PICTURES in the environment, pictures of the pages go into that folder."""
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -15,9 +16,11 @@ import studies
 
 from selenium.webdriver.support.ui import WebDriverWait
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import NIGHTLY, by_night  # noqa: E402, F401
+
 PROGRAM, MAKE_STORE = sys.argv[1:3]
 PICTURES = os.environ.get("ALTIPLAN_PICTURES")
-NIGHTLY = bool(os.environ.get("ALTIPLAN_NIGHTLY"))
 
 
 def report(store, folder, *options):
