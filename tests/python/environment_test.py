@@ -3,7 +3,7 @@
 import unittest
 
 import numpy
-from case import NIGHTLY, SANITIZED, by_day
+from case import SANITIZED, by_day
 from script_case import ScriptCase, few_by_day, main
 
 import altiplan
@@ -167,7 +167,7 @@ class Layers(ScriptCase):
     def test_ground_and_cells_keep_the_contract(self):
         for body in by_day([GROUND, "return altiplan.Cells([[[0, 1], [1, 0]]], 100)", IN_PYTHON], 3):
             self.layer(body)
-            done = self.altiplan("check-plugin", "tested.py", "--time-limit", 300, "--jobs", 2, "--rounds", 5 if NIGHTLY else 2)
+            done = self.altiplan("check-plugin", "tested.py", "--time-limit", 300, "--jobs", 2, *few_by_day or ["--rounds", 5])
             self.assertIn("0 failed", done.stdout)
 
 

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from case import HANGS_S, NIGHTLY, PROGRAM, SANITIZED
+from case import HANGS_S, NIGHTLY, PROGRAM, SANITIZED, by_day
 from script_case import AROUND, STEP, ScriptCase, main
 
 FAILS = {  # what plan does: what the result says, and its reason
@@ -59,8 +59,8 @@ BEGINS = "open('begun', 'w').close()\n"
 
 class Fails(ScriptCase):
     def test_every_fault(self):
-        by_day = {reason: body for body, (_, reason) in FAILS.items()}.values()  # one of each
-        for body in FAILS if NIGHTLY else by_day:
+        one_of_each = {reason: body for body, (_, reason) in FAILS.items()}.values()
+        for body in FAILS if NIGHTLY else one_of_each:
             says, reason = FAILS[body]
             with self.subTest(body=body):
                 pipeline = self.planner(body)
@@ -119,28 +119,28 @@ class Files(ScriptCase):
             os.remove(self.folder / f"{name}.py")
 
     def test_what_the_text_announces(self):
-        for text, says in (
+        for text, says in by_day((
                 ("NAME = 'a'\n@altiplan.planner(NAME, 'what')\nclass A: pass\n", "line 2: expected"),
                 ("@altiplan.planner('A-b', 'what')\nclass A: pass\n", "line 1: offers a planner named"),
                 ("@altiplan.planner('a', '" + "x" * 300 + "')\nclass A: pass\n", "has 300 bytes"),
                 ("@altiplan.planner('a')\nclass A: pass\n", "line 1: expected"),
                 ("'''\n@altiplan.planner('a', 'what')\n'''\n", "does not contain it"),
-                ("import altiplan\n@altiplan.planner('astar', 'what')\nclass A: pass\n", "remove one")):
+                ("import altiplan\n@altiplan.planner('astar', 'what')\nclass A: pass\n", "remove one")), 2, 1):
             self.write("a.py", text)
             self.assertIn(says, self.altiplan("plugins").stdout)
         self.write("a.py", "import os\nos.abort()\n")  # not a plugin, and none of its code runs
         self.assertNotIn("a.py", self.altiplan("plugins").stdout)
 
     def test_declarations(self):
-        for parameters, says in (("a: set = altiplan.parameter(None, doc='x')", "the parameter a: is of type"),
-                                 ("a: int = altiplan.parameter(None, doc='x')", "None by default"),
-                                 ("a: int = altiplan.parameter(1.5, doc='x')", "a default of type integer"),
-                                 ("a: int = altiplan.parameter(2**70, doc='x')", "a default of 64 bits"),
-                                 ("a: float = altiplan.parameter(1.0, above=5, doc='x')", "its bounds"),
-                                 ("a: float = altiplan.parameter(float('inf'), doc='x')", "finite"),
-                                 ("a: str = altiplan.parameter('b', choices=['c'], doc='x')", "among c"),
-                                 ("a: int = altiplan.parameter(1, doc=5)", "expected texts, found 5"),
-                                 ("aB: int = altiplan.parameter(1, doc='x')", "named 'aB'")):
+        for parameters, says in by_day((("a: set = altiplan.parameter(None, doc='x')", "the parameter a: is of type"),
+                                        ("a: int = altiplan.parameter(None, doc='x')", "None by default"),
+                                        ("a: int = altiplan.parameter(1.5, doc='x')", "a default of type integer"),
+                                        ("a: int = altiplan.parameter(2**70, doc='x')", "a default of 64 bits"),
+                                        ("a: float = altiplan.parameter(1.0, above=5, doc='x')", "its bounds"),
+                                        ("a: float = altiplan.parameter(float('inf'), doc='x')", "finite"),
+                                        ("a: str = altiplan.parameter('b', choices=['c'], doc='x')", "among c"),
+                                        ("a: int = altiplan.parameter(1, doc=5)", "expected texts, found 5"),
+                                        ("aB: int = altiplan.parameter(1, doc='x')", "named 'aB'")), 2):
             self.planner("return None", parameters=parameters)
             self.assertIn(says, self.altiplan("plugins").stdout)
 
