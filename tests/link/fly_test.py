@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""fly_test.py PROGRAM SOURCES: altiplan fly with the vehicle of tests/link/vehicle."""
+"""fly_test.py PROGRAM SOURCES: altiplan fly with the vehicle of tests/link/vehicle. By day most flights are those of
+one autopilot."""
 import json
 import os
+import pathlib
 import signal
 import sys
 import time
 
 from flown_case import SPEEDUP, FlownCase, unittest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import by_day  # noqa: E402
 
 FlownCase.program, FlownCase.sources = sys.argv[1:3]
 COPTERS = ("generic", "ardupilot", "px4")
@@ -36,7 +41,7 @@ class Flown(Fly):
 
     def test_a_route_is_flown_and_judged(self):
         result = self.planned(pilot="route")
-        for autopilot in COPTERS:
+        for autopilot in by_day(COPTERS, 2):
             with self.subTest(autopilot=autopilot):
                 vehicle = self.vehicle("--autopilot", autopilot, speedup=SPEEDUP)
                 code, flight, out = self.fly(result, vehicle, *TAKEOFF, "--land", "--arm")
@@ -58,9 +63,9 @@ class Flown(Fly):
         self.assertLess(flight["cross_track_max_m"], 100)
 
     def test_a_threat_is_flown_around(self):
-        for kind, autopilots in (("copter", COPTERS), ("plane", ("ardupilot",))):
+        for kind, autopilots in by_day((("copter", COPTERS), ("plane", ("ardupilot",))), 2):
             result = self.planned(kind, pop_up=True)
-            for autopilot in autopilots:
+            for autopilot in by_day(autopilots, 3, 1):
                 with self.subTest(autopilot=autopilot, kind=kind):
                     vehicle = self.vehicle("--autopilot", autopilot, "--type", kind,
                                            *HOLDING.get(autopilot, ()))
@@ -131,7 +136,7 @@ class Begun(Fly):
     def test_a_start_that_comes_to_nothing(self):
         """Before the first item: the motors stop, or a pilot switches the mode."""
         result = self.planned()
-        for autopilot in ("ardupilot", "px4"):
+        for autopilot in by_day(("ardupilot", "px4"), 2):
             for fault, words in (({"fault": "disarm"}, "it has disarmed"),
                                  ({"fault": "switch"}, "it is in the mode ")):
                 with self.subTest(autopilot=autopilot, fault=fault):
@@ -184,7 +189,7 @@ class Begun(Fly):
     def test_what_is_neither_hold_nor_return_is_not_commanded(self):
         result = self.planned(pop_up=True)
         silent = '[{"fault": "lose", "direction": "out", "message": "PARAM_VALUE"}]'
-        for autopilot, options, words in (
+        for autopilot, options, words in by_day((
                 ("px4", (), "it flies on for 1 s and is in POSCTL"),
                 ("px4", ("COM_OBL_RC_ACT=4",), "lands where it is"),
                 ("px4", ("COM_OBL_RC_ACT=5", "NAV_DLL_ACT=6"), "holds, then disarms"),
@@ -192,7 +197,7 @@ class Begun(Fly):
                 ("ardupilot", ("FS_GCS_ENABLE=5",), "hovers, then lands where it is"),
                 ("ardupilot", ("GUID_TIMEOUT=30.0",), "it flies on for 30 s"),
                 ("ardupilot", (silent,), "it does not tell its parameter GUID_TIMEOUT"),
-                ("generic", (), "its autopilot is neither ArduPilot nor PX4")):
+                ("generic", (), "its autopilot is neither ArduPilot nor PX4")), 3, 1):
             with self.subTest(autopilot=autopilot, options=options):
                 more = [part for option in options for part in
                         ("--faults" if option == silent else "--parameter", option)]
@@ -261,7 +266,7 @@ class Ended(Fly):
         result = self.planned(pop_up=True)
         switch = ('[{"fault": "switch", "mode": "RTL", "skip": 60, "count": 1, "message":'
                   ' ["SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED"]}]')
-        for autopilot in ("ardupilot", "px4"):
+        for autopilot in by_day(("ardupilot", "px4"), 2):
             with self.subTest(autopilot=autopilot):
                 vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
                                        "--faults", switch, speedup=3)
@@ -288,7 +293,7 @@ class Ended(Fly):
         other = os.path.join(self.folder, "other.json")
         os.rename(self.planned(pilot="route"), other)
         result = self.planned(pop_up=True)
-        for autopilot in ("px4", "ardupilot"):
+        for autopilot in by_day(("px4", "ardupilot"), 2):
             with self.subTest(autopilot=autopilot):
                 vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
                                        speedup=3)
@@ -316,7 +321,7 @@ class Ended(Fly):
         """Also where it is too low for its pilot before a heartbeat says so."""
         stop = ('[{"fault": "disarm", "skip": 60, "count": 1, "message":'
                 ' ["SET_POSITION_TARGET_GLOBAL_INT", "SET_POSITION_TARGET_LOCAL_NED"]}]')
-        for autopilot in ("ardupilot", "px4"):
+        for autopilot in by_day(("ardupilot", "px4"), 2):
             with self.subTest(autopilot=autopilot):
                 vehicle = self.vehicle("--autopilot", autopilot, *HOLDING.get(autopilot, ()),
                                        "--parameter", "COM_OF_LOSS_T=5.0", "--faults", stop,
