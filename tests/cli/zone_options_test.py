@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from plan_case import PROGRAM, TERRAIN, PlanCase, item
+from plan_case import PROGRAM, TERRAIN, PlanCase, item, plan_of
 
 ENDS = ("--from", "-84.38,36.48", "--to", "-84.20,36.62")
 METRES = 6371008.8 * math.pi / 180
@@ -65,7 +65,7 @@ class Permission(ZoneOptions):
     def test_a_route_through_it(self):
         out, _ = self.go("--avoid", "zones.json", "-o", "shut", code=1)
         self.assertIn("which enters 'USR1 (River)'", out)
-        for called in ("USR1", "River", "USR1 (River)"):
+        for called in ("USR1", "River"):
             with self.subTest(called):
                 out, _ = self.go("--avoid", "zones.json", "--permission", called, "-o", called)
                 self.assertIn("zones: zones.json: open by a permission: 'USR1 (River)'\n", out)
@@ -121,6 +121,13 @@ class Permission(ZoneOptions):
         self.assertIn("'USP2 (Plant)' of 'zones.json'", out)
 
 
+class WithoutOptions(ZoneOptions):
+    def test_a_copter_leaves_its_line_at_a_corner_beside_a_zone(self):
+        self.airspace("corner.json", zone("USP9", "Corner", "PROHIBITED",
+                                          box(-84.294769, 36.546443, 0.01391, 0.006612)))
+        self.assertIn("check: pass", self.go("--avoid", "corner.json")[0])
+
+
 class Buffer(ZoneOptions):
     def nearest(self, folder):
         """Metres between the route and the plant, on a sphere about it."""
@@ -148,12 +155,20 @@ class Buffer(ZoneOptions):
         out = self.judge("plain/route.plan", "--airspace", "plant.json", "--buffer", "200", code=1)
         self.assertRegex(out, r"\(\d+(\.\d+)? m from a zone's border, from which 200 m are kept\), where "
                               r".*: 'USP2 \(Plant\)' of 'plant.json'")
-        self.run_it("check", "--route", "plain/route.plan", "--scenario", "wide/scenario.yaml", code=1)
+        out, _ = self.run_it("check", "--route", "plain/route.plan", "--scenario", "wide/scenario.yaml",
+                             code=1)
+        self.assertIn("of clearance are needed: 'USP2 (Plant)' of 'plant.json'\n", out)
 
     def test_why_there_is_no_route(self):
         self.airspace("near.json", zone("USP4", "Camp", "PROHIBITED", box(-84.379, 36.48, 0.01, 0.01)))
         out, _ = self.go("--avoid", "near.json", "--buffer", "100", code=1)
         self.assertIn("reason: the start lies within --buffer, 100 m, of 'USP4 (Camp)'\n", out)
+        fence = {"version": 2, "circles": [], "polygons": [
+            {"version": 1, "inclusion": True, "name": "County", "polygon": [[36.45, -84.41], [36.45, -84.25],
+                                                                            [36.65, -84.25], [36.65, -84.41]]}]}
+        (self.folder / "fence.plan").write_text(json.dumps(dict(plan_of([]), geoFence=fence)))
+        out, _ = self.go("--avoid", "fence.plan", code=1)
+        self.assertIn("reason: the goal lies outside 'County'\n", out)
         # A gap of 450 m.
         self.airspace("gap.json", zone("USP5", "West", "PROHIBITED", box(-84.6, 36.54, 0.3, 0.01)),
                       zone("USP6", "East", "PROHIBITED", box(-84.295, 36.54, 0.3, 0.01)))

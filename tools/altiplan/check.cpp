@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "altiplan/formats/mission_file.hpp"
+#include "altiplan/nearest_place.hpp"
 #include "check_survey.hpp"
 #include "commands.hpp"
 #include "flight_text.hpp"
@@ -12,6 +13,7 @@
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
 #include "host/gate/task_verdict.hpp"
+#include "host/gate/violated_zone.hpp"
 #include "host/import_export/imported_route.hpp"
 #include "host/import_export/route_format.hpp"
 #include "host/judge/judge.hpp"
@@ -66,6 +68,24 @@ void print_track(const host::TrackVerdict& verdict, const host::Track& track, bo
   }
 }
 
+/// Adds the name of the zone, or of another part of a layer, that a leg comes too near to.
+void name_zones(CheckResult& verdict, const Route& route, const World& world) {
+  host::ZoneNames names(world);
+  for (Violation& violation : verdict.violations) {
+    const Layer* layer = world.find(violation.layer);
+    if (violation.constraint != "clearance" || layer == nullptr ||
+        violation.at >= route.leg_count()) {
+      continue;
+    }
+    const Leg leg = route.leg(violation.at);
+    host::Finding finding;
+    finding.violation = violation;
+    finding.at = leg.at(nearest_share(*layer->environment, leg.from, leg.to, violation.value));
+    names.add_to(finding);
+    violation.message = finding.violation.message;
+  }
+}
+
 /// Prints the verdicts on the route and, if there is one, on the flight; returns the exit code.
 int report(const host::Mission& mission, const Route& route,
            const std::optional<host::Track>& track, bool telemetry,
@@ -74,6 +94,7 @@ int report(const host::Mission& mission, const Route& route,
   CheckResult verdict = busy("judging the route", [&] {
     return host::judge(route, mission.request, mission.via, mission.runways);
   });
+  name_zones(verdict, route, *mission.request.world);
   if (undone) {
     verdict.violations.push_back(*undone);
   }

@@ -67,18 +67,32 @@ std::string kilometres(const Polyline& route) {
   return host::with_digits(length(route) / 1000, 4) + " km";
 }
 
-/// Of points that lie in zones, or in their buffer, which no route can leave.
+/// Where a point lies that zones close: "in 'Prison'", "outside 'County'"; "" if none does.
+std::string where_in_zones(const World& world, const Vec3& at, double buffer_m) {
+  const std::string near = "within --buffer, " + host::with_digits(buffer_m, 4) + " m, of ";
+  for (const double reach : {0.0, buffer_m}) {
+    const std::vector<std::string> names = zones_entered(world, {at, at}, reach);
+    if (!names.empty()) {
+      return (reach > 0 ? near : "in ") + host::listed(names, kNamed);
+    }
+  }
+  for (const Layer& layer : world.layers()) {
+    const std::optional<Drawing> drawing = layer.environment->drawing();
+    if (layer.plugin == "zones" && drawing && layer.environment->blocked(at, at, 0)) {
+      return "outside '" + name_at(*drawing, at) + "'" +
+             (buffer_m > 0 ? ", or " + near + "its border" : "");
+    }
+  }
+  return "";
+}
+
+/// Of points that lie where zones close, which no route can leave.
 std::vector<std::string> ends_in_zones(const host::Mission& mission, double buffer_m) {
   std::vector<std::string> sentences;
   const auto add = [&](const std::string& what, const Vec3& at) {
-    const std::string within = " within --buffer, " + host::with_digits(buffer_m, 4) + " m, of ";
-    for (const double reach : {0.0, buffer_m}) {
-      const std::vector<std::string> names = zones_entered(mission.truth, {at, at}, reach);
-      if (!names.empty()) {
-        sentences.push_back(what + " lies" + (reach > 0 ? within : " in ") +
-                            host::listed(names, kNamed));
-        return;
-      }
+    const std::string where = where_in_zones(mission.truth, at, buffer_m);
+    if (!where.empty()) {
+      sentences.push_back(what + " lies " + where);
     }
   };
   add("the start", mission.request.start.position);

@@ -24,6 +24,9 @@ constexpr double kGravity = 9.80665;
 /// within it.
 constexpr double kFlownWithin = 3;
 
+/// From zones, its radius included: it leaves its line at corners, by what autopilots accept.
+constexpr double kCopterFromZones = 5;
+
 /// Of an aeroplane's turn radius: clearance from islands, and how far rows go on beyond an area.
 constexpr double kIslandRadii = 1.2;
 constexpr double kBeyondRadii = 1.5;
@@ -300,7 +303,7 @@ std::string FirstRoute::point(const WishedPoint& at) const {
 
 double FirstRoute::clearance_m() const {
   if (!wish_.turn_radius_m) {
-    return kFlownWithin;
+    return wish_.avoid.empty() || lines_ ? kFlownWithin : kCopterFromZones;
   }
   return lines_ || !wish_.avoid.empty() ? kWingFlownWithin : 0;
 }
