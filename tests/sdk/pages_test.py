@@ -12,6 +12,9 @@ import tempfile
 
 import walk
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from night import NIGHTLY  # noqa: E402
+
 SOURCE, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 WALKED = {"docs/how-to/write-a-plugin.md", "docs/how-to/plan-with-the-kit.md", "docs/how-to/swarm-with-the-kit.md",
           *(f"docs/tutorials/{page.name}" for page in (SOURCE / "docs/tutorials").glob("*.md"))}
@@ -33,6 +36,8 @@ NOT_RUN = {
     r"gdb\b|~/altiplan-asan|altiplan (run first\.yaml|check-plugin)":
         "of the reader's plugin, in a debugger or with sanitizers; sdk_walk and sdk_new make such",
 }
+if not NIGHTLY:
+    NOT_RUN[r"(build/release/bin/)?altiplan (study|report) \S*quick\."] = "by night; docs_tutorial_first_study runs such"
 COMMAND = re.compile(r"^(?:\$ )?((?:altiplan(?:-\w[\w-]*)?|tools/[\w/.]+|build/[\w/]+|~/[\w/-]+|cmake|"
                      r"ctest|cd|export|gdb)(?: .*|$))", re.M)
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.M | re.S)
