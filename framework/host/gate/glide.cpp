@@ -130,28 +130,30 @@ class GlideJudge {
     return flight_.glide_in(place, report_.ratio, lowest_m_);
   }
 
-  /// Most of a band's places lie in few discs about nodes of a grid, each of which is judged once.
+  /// A disc about a node of a grid, which holds the place: most of a band's places lie in the same.
+  static Whereabouts widened(const Whereabouts& place) {
+    const double apart = std::exp2(std::round(std::log2(std::max(place.radius_m, 4.0) / 2)));
+    const double level = apart / 8;
+    const auto node = [&](double at) { return std::round(at / apart) * apart; };
+    return {{node(place.at.x()), node(place.at.y())},
+            place.radius_m + apart,
+            std::floor(place.low_m / level) * level,
+            std::ceil(place.high_m / level) * level};
+  }
+
   bool is_reached(const FlownPlaces& places, const Whereabouts& place) {
-    constexpr double kApart = 30;  // metres between nodes
-    constexpr double kLevels = 5;
-    const Whereabouts wide{
-        {std::round(place.at.x() / kApart) * kApart, std::round(place.at.y() / kApart) * kApart},
-        place.radius_m + kApart,
-        std::floor(place.low_m / kLevels) * kLevels,
-        std::ceil(place.high_m / kLevels) * kLevels};
-    const std::array<double, 4> key{wide.at.x(), wide.at.y(), wide.low_m, wide.high_m};
-    Known& known = known_[key];
+    const Whereabouts wide = widened(place);
+    Known& known = known_[{wide.at.x(), wide.at.y(), wide.low_m, wide.high_m}];
     if (wide.radius_m > known.radius_m && wide.radius_m < known.failed_m) {
       const auto reached = reached_from(places.part().command, wide);
       known.best = reached ? reached : known.best;
       (reached ? known.radius_m : known.failed_m) = wide.radius_m;
     }
-    const auto reached =
-        wide.radius_m <= known.radius_m ? known.best : reached_from(places.part().command, place);
-    if (reached) {
-      add_reached(places, place, *reached);
+    const bool is_known = wide.radius_m <= known.radius_m;
+    if (is_known) {
+      add_reached(places, place, *known.best);
     }
-    return reached.has_value();
+    return is_known;
   }
 
   /// The site above which the glide is the highest, of those that it reaches.
@@ -202,8 +204,9 @@ class GlideJudge {
   }
 
   void refuse(const FlownPlaces& places, const Whereabouts& place) {
-    const Candidate best = candidates(place, glide_in(place)).front();
-    refused_.push_back({places.times_of(place, kGlideFinest), places.part().command, place, best});
+    const Whereabouts wide = widened(place);
+    refused_.push_back({places.times_of(place, kGlideFinest), places.part().command, wide,
+                        candidates(wide, glide_in(wide)).front()});
   }
 
   /// Stretches of refused places, as those of returns.
