@@ -73,6 +73,7 @@ def all_models(folder):
                             "-dstnodata", "-9999", "-ot", "Float32", str(file), made + ".tif"], check=True)
             subprocess.run(["gdal_translate", "-q", "-of", "AAIGrid", "-co", "FORCE_CELLSIZE=YES", made + ".tif",
                             made + ".asc"], check=True)
+            pathlib.Path(made + ".prj").unlink()  # it is said with --crs
             model = Model(made + ".asc")
         else:
             continue
