@@ -61,6 +61,8 @@ host::RouteWish wish_of(const GoArguments& arguments) {
     wish.points.push_back(point_of("--via", via));
   }
   wish.points.push_back(point_of("--to", arguments.to));
+  wish.uses_runways =
+      uses_runway(arguments, arguments.takeoff) || uses_runway(arguments, arguments.land);
   return wish;
 }
 

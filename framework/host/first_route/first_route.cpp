@@ -27,6 +27,9 @@ constexpr double kFlownWithin = 3;
 /// From zones, its radius included: it leaves its line at corners, by what autopilots accept.
 constexpr double kCopterFromZones = 5;
 
+/// The same of the heights of an aeroplane between its runways, which lag behind slopes.
+constexpr double kRunwayHeightWithin = 6;
+
 /// Of an aeroplane's turn radius: clearance from islands, and how far rows go on beyond an area.
 constexpr double kIslandRadii = 1.2;
 constexpr double kBeyondRadii = 1.5;
@@ -313,7 +316,7 @@ double FirstRoute::flown_margin() const {
     constexpr double kStored = 0.05;  // of what is drawn, numbers of files may be off
     return lines_->off_m - lines_->drawn_off_m(*wish_.survey) - kStored;
   }
-  double margin = kFlownWithin;
+  double margin = wish_.uses_runways ? kRunwayHeightWithin : kFlownWithin;
   for (const WishedPoint& at : wish_.points) {
     const double height = at.above_ground_m.value_or(heights_.ends_m);
     margin =

@@ -17,7 +17,7 @@ constexpr double kGlide = 5;         // degrees: the steepest landing of PX4's d
 constexpr double kShallowest = 4;    // degrees: an aeroplane of ArduPilot's may climb so little
 constexpr double kHeightStep = 10;   // metres between slopes that are tried,
 constexpr double kMostHigher = 100;  // up to so much above the lowest
-constexpr double kSettles = 12;      // seconds from a turn until it flies along its line
+constexpr double kSettles = 20;      // seconds from a turn until it flies along its line, level
 constexpr double kTurnsBefore = 5;   // seconds before a corner at which it turns, at most
 constexpr double kOnward = 600;      // metres flown on straight after a climb
 constexpr double kCalm = 0.5;        // m/s
@@ -106,12 +106,29 @@ PlanReport RunwayChoice::judged(const LandingEntry& landing, const Vec3& touch,
                                 double turn_deg) const {
   const LandingLine line = line_of(landing, touch);
   const double room = std::max(*wish_.turn_radius_m, kTurnsBefore * speed_mps_);
-  const Vec3 corner = line.entry - room * along(landing.course_deg);
-  const Vec3 begin = corner - 3 * room * along(landing.course_deg + turn_deg);
+  // It sinks until then, unless an upper limit may be in the way.
+  const double slope = first_.heights().max_m ? 0 : std::tan(radians(landing.glide_deg));
+  const Vec3 up(0, 0, slope);
+  const Vec3 corner = line.entry - room * (along(landing.course_deg) - up);
+  const Vec3 begin = corner - 3 * room * (along(landing.course_deg + turn_deg) - up);
   Vec3 below = begin;
   below.z() = world_.truth.ground(begin.x(), begin.y()).value_or(touch.z());
   return judged({begin, corner, line.entry, line.fix, touch}, Command::kWaypoint, Command::kLand,
                 below, gate_);
+}
+
+bool RunwayChoice::passes(const LandingEntry& landing, const Vec3& touch) const {
+  constexpr int kFix = 4;  // its item; the landing's comes last
+  bool has_way = false;
+  for (const double turn : {0.0, 90.0, -90.0}) {
+    const PlanReport report = judged(landing, touch, turn);
+    has_way = has_way || report.verdict() == Verdict::pass;
+    if (std::any_of(report.findings.begin(), report.findings.end(),
+                    [](const Finding& finding) { return finding.item >= kFix; })) {
+      return false;
+    }
+  }
+  return has_way;
 }
 
 PlanReport RunwayChoice::judged(const TakeOffEntry& takeoff, const Vec3& start) const {
@@ -165,10 +182,8 @@ std::optional<LandingEntry> RunwayChoice::landing(const Eigen::Vector2d& at,
       if (!may_pass({line.entry, line.fix, *touch}, {std::nullopt, line.fix})) {
         continue;
       }
-      for (const double turn : {0.0, 90.0, -90.0}) {
-        if (judged(entry, *touch, turn).verdict() == Verdict::pass) {
-          return entry;
-        }
+      if (passes(entry, *touch)) {
+        return entry;
       }
     }
   }

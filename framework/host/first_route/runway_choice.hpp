@@ -32,6 +32,8 @@ class RunwayChoice {
   TakeOffEntry takeoff_on(double course_deg, double height_m) const;
   /// True if the drawn line keeps what is demanded of the route.
   bool may_pass(const Polyline& line, const Runways& runways) const;
+  /// Whichever way it turns to its line, the approach and the landing pass, and one of the turns.
+  bool passes(const LandingEntry& landing, const Vec3& touch) const;
   PlanReport judged(const LandingEntry& landing, const Vec3& touch, double turn_deg) const;
   PlanReport judged(const TakeOffEntry& takeoff, const Vec3& start) const;
   PlanReport judged(const Polyline& items, int first, int last, const Vec3& home,

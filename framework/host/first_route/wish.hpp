@@ -44,6 +44,7 @@ struct RouteWish {
   double reserve = 0.2;                ///< share of the battery
   std::optional<std::string> planner;  ///< none: chosen
   std::optional<std::string> start_time;
+  bool uses_runways = false;            ///< an aeroplane's, before they are chosen, too
   std::optional<TakeOffEntry> takeoff;  ///< of an aeroplane, from the ground of the start
   std::optional<LandingEntry> landing;  ///< and on that of the goal
   std::optional<SurveyWish> survey;     ///< in place of a route to a goal
