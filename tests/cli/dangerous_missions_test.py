@@ -48,6 +48,8 @@ MISSIONS = [
     ("a home in the air after a climb above the ground", COPTER,
      [off(), to(16, 300, 0, 30, frame=10), to(179, 100, 0, 5, frame=10),
       way(300, 0)], None, {}, "a home at a height above the ground"),
+    ("a landing from a height that nobody knows", COPTER, [to(21, 300, 0, 50)], (280, -20, 320, 20, 460, 2000), {},
+     "the height from which it sinks"),
     ("a take-off of a plane that flies", PLANE,
      [way(0, 0), way(600, 0), to(22, 0, 0, 200), way(600, 800, 200)], None, {}, "a take-off in flight"),
     ("a take-off of a VTOL that flies", VTOL, [UP, way(900, 0), to(84, 0, 0, 100), way(1800, 0, 100), HOME],

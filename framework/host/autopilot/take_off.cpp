@@ -30,6 +30,13 @@ void Walker::begin_in_the_air(std::size_t n) {
   }
   flight_.remark(Weight::note, "no_take_off", n,
                  "the mission has no take-off: it is judged from here on, the way to here is not");
+  // A landing sinks from the height at which the vehicle is, whatever its own altitude says.
+  const Task task = task_of(n);
+  if (task == Task::land || task == Task::vtol_land || task == Task::payload_place) {
+    flight_.remark(Weight::not_judged, "not_judged", n,
+                   "the height from which it sinks to this landing is not in the mission: begin "
+                   "with a take-off or a waypoint");
+  }
   if (autopilot_.is_copter()) {
     hover_.emplace(flight_, to.at, to.low);
     hover_->high = to.high;
