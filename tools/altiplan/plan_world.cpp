@@ -155,7 +155,13 @@ std::vector<host::Tile> models_about(const PlanCheck& plan, const formats::Missi
   };
   std::stable_sort(tiles.begin(), tiles.end(),
                    [&](const host::Tile& a, const host::Tile& b) { return held(a) > held(b); });
-  return host::united(std::move(tiles), registry);
+  tiles = host::united(std::move(tiles), registry);
+  for (host::Tile& tile : tiles) {  // whose names the scenario's folder does not change
+    tile.file = absolute(tile.file);
+    std::transform(tile.more.begin(), tile.more.end(), tile.more.begin(),
+                   [](const std::filesystem::path& file) { return absolute(file); });
+  }
+  return tiles;
 }
 
 /// The scenario that the options describe.

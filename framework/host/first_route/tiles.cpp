@@ -104,10 +104,9 @@ bool Tile::holds(double lon, double lat) const {
 std::string files_text(const Tile& tile) {
   std::string tiles;
   for (const fs::path& file : tile.more) {
-    tiles += (tiles.empty() ? ", tiles: [" : ", ") + exact_json_text(fs::absolute(file).string());
+    tiles += (tiles.empty() ? ", tiles: [" : ", ") + exact_json_text(file.string());
   }
-  return "file: " + exact_json_text(fs::absolute(tile.file).string()) +
-         (tiles.empty() ? "" : tiles + "]");
+  return "file: " + exact_json_text(tile.file.string()) + (tiles.empty() ? "" : tiles + "]");
 }
 
 std::unique_ptr<Environment> build_model(const Tile& tile, const Site& site, Registry& registry,
