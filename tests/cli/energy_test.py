@@ -94,16 +94,17 @@ class Energy(case.CliCase):
         self.assertAlmostEqual(metrics["energy_wh"] / wh, 1, delta=1e-8)
 
     def test_energy_in_wind(self):
-        """By airspeed, which is horizontal, whatever the speed over the ground."""
-        metrics, ways = self.metrics("{speed_mps: 9, energy: {hover: {power_w: 200, cruise_w: 290, cruise_mps: 9, "
-                                     "mass_kg: 2, efficiency: 0.5}}}", "{from_deg: 270, speed_mps: 4}")
-        wh = 0
+        """The speed through the air counts in every direction, whatever the speed over the ground."""
+        metrics, ways = self.metrics("{speed_mps: 9, energy: {multirotor: {mass_kg: 1.8}}}",
+                                     "{from_deg: 270, speed_mps: 4}")
+        wh = duration = 0
         for x, y, z in ways:
-            flat = math.hypot(x, y)
-            along, across = 4 * x / flat, 4 * y / flat
-            seconds = flat / (math.sqrt(81 - across**2) + along)
-            wh += (290 + 2 * G * max(0, z / seconds) / 0.5) * seconds / 3600
+            seconds = (x * x + y * y + z * z) / (4 * x + math.sqrt((4 * x)**2 + (81 - 16) * (x * x + y * y + z * z)))
+            self.same(math.hypot(x / seconds - 4, y / seconds, z / seconds), 9)
+            wh += liu(1.8, math.hypot(x / seconds - 4, y / seconds), z / seconds) * seconds / 3600
+            duration += seconds
         self.same(metrics["energy_wh"], wh)
+        self.same(metrics["duration_s"], duration)
 
     def test_battery(self):
         vehicle = "{speed_mps: 9, energy: {capacity_wh: %s, reserve: 0.25, usable: 0.8, multirotor: {mass_kg: 1.5}}}"
@@ -151,6 +152,10 @@ class Energy(case.CliCase):
                    + "moving: [{sphere: {at_m: [1, 1, 1], radius_m: 1, velocity_mps: [1, 0, 0]}, known: true}]\n")
         _, err = self.call("run", "pipeline.yaml", code=3)
         self.assertIn("remove vehicle.acceleration_mps2", err)
+        self.write("scenario.yaml", self.read("scenario.yaml").replace("{acceleration_mps2: 1}", "{}")
+                   .replace("wind: {}", "wind: {from_deg: 90, speed_mps: 0.1}"))
+        _, err = self.call("run", "pipeline.yaml", code=3)
+        self.assertIn("in wind do not: remove wind", err)
 
     def test_a_flight_has_its_own_time(self):
         ran = self.ran("{speed_mps: 9, acceleration_mps2: 20, energy: {multirotor: {mass_kg: 1.5}}}",

@@ -4,6 +4,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/kit/dubins/steering.hpp"
+#include "altiplan/measures.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::wind_layers_test {
@@ -110,6 +111,28 @@ TEST(WindLayers, WhatRoundingLeavesOfAPathHasNoLeg) {
       }
     }
   }
+}
+
+TEST(LegDuration, OfACopterIsAtItsSpeedThroughTheAirInEveryDirection) {
+  RandomStream random(7);
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 from = random.in({{-100, -100, 20}, {100, 100, 180}});
+    const Vec3 to = random.in({{-100, -100, 20}, {100, 100, 180}});
+    Request request = across(from, to);
+    const Vec3 wind(random.uniform(-15, 15), random.uniform(-10, 10), 0);
+    request.wind.layers = {{0, wind}};
+    const double seconds = leg_duration(Leg::straight(from, to), request);
+    EXPECT_NEAR(((to - from) / seconds - wind).norm(), kSpeed, 1e-9 * kSpeed);
+    request.wind.layers = {{0, {1e-9, 0, 0}}};  // the least wind is as none
+    EXPECT_NEAR(leg_duration(Leg::straight(from, to), request), (to - from).norm() / kSpeed, 1e-6);
+  }
+  // Straight up it leans against the wind; against one that is stronger it gets nowhere.
+  Request request = across({0, 0, 20}, {0, 0, 120});
+  request.wind.layers = {{0, {12, 0, 0}}};
+  EXPECT_NEAR(leg_duration(Leg::straight({0, 0, 20}, {0, 0, 120}), request), 100 / 16.0, 1e-9);
+  request.wind.layers = {{0, {25, 0, 0}}};
+  EXPECT_EQ(leg_duration(Leg::straight({0, 0, 20}, {0, 0, 120}), request), kInfinity);
+  EXPECT_NEAR(leg_duration(Leg::straight({0, 0, 20}, {90, 0, 20}), request), 2, 1e-9);
 }
 }  // namespace
 }  // namespace altiplan::wind_layers_test

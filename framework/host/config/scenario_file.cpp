@@ -545,6 +545,10 @@ void ScenarioFile::describe(Fields& f) {
               vehicle.has_wing(),
           "among moving obstacles with known: true routes are judged at speeds that change at "
           "once: remove vehicle.acceleration_mps2, or a copter's vehicle.performance");
+  f.check(
+      !avoids || vehicle.has_wing() || !wind.blows(),
+      "among moving obstacles with known: true a copter's times count, and its flight keeps its "
+      "speed over the ground, which routes in wind do not: remove wind");
   f("events", events).doc("changes during the flight");
   f("constraints", constraints).doc("constraints that apply to every pipeline");
   f("objective", objective)

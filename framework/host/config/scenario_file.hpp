@@ -132,6 +132,7 @@ struct WindEntry {
   std::optional<double> from_deg;
   std::optional<double> speed_mps;
   std::vector<WindLayerEntry> layers;
+  bool blows() const { return speed_mps.value_or(0) > 0 || !layers.empty(); }
   void describe(Fields& f);
 };
 
