@@ -18,6 +18,7 @@ constexpr const char* kConsistent =
 constexpr const char* kOfRoutes =
     "Objective contract 5: without the trait `waypoints` costs add up to at least the sum of cost "
     "over the legs; min_cost is at most the costs of any route";
+constexpr const char* kNoPrice = "Suite: there must be something to judge";
 constexpr const char* kDenied = "Objective contract 4: cost depends on nothing that traits denies";
 
 /// Rounding of an integral over many pieces, and what chords of a turn are off by.
@@ -31,6 +32,7 @@ bool is_near(double a, double b, double share) {
 void additive(const ObjectiveBench& bench, Report& report) {
   const auto objective = bench.made();
   RandomStream random = bench.stream("additive");
+  bool any_has_price = false;
   for (int n = 0; n < bench.count(); ++n) {
     const Leg leg = bench.leg(random);
     const double cut = random.uniform(0.05, 0.95);
@@ -38,6 +40,7 @@ void additive(const ObjectiveBench& bench, Report& report) {
     const Leg second = leg.piece(cut, 1);
     const double begins = random.uniform(0, 1000);
     const double whole = objective->cost(leg, begins, bench.request);
+    any_has_price |= whole < kInfinity;
     const double parts =
         objective->cost(first, begins, bench.request) +
         objective->cost(second, begins + leg_duration(first, bench.request), bench.request);
@@ -46,6 +49,10 @@ void additive(const ObjectiveBench& bench, Report& report) {
              ", cut at " + text(cut) + " its pieces cost " + text(parts);
     });
   }
+  report.expect(any_has_price, kNoPrice, [] {
+    return "no leg has a finite cost: give a parameter set with the layers that the objective "
+           "needs, such as ground (`before:`), and a `volume` in which it has a value";
+  });
 }
 
 void consistent(const ObjectiveBench& bench, Report& report) {

@@ -313,7 +313,7 @@ class CheckPlan(PlanCase):
         self.zones("z.json", self.around(8, 47), 3000)
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
         out, _ = self.check(high, "--airspace", "z.json", code=0)
-        self.assertIn("z.json: no zone within 50 km of the route", out)
+        self.assertIn("z.json: nothing is closed within 50 km of the route", out)
 
     def test_hours_are_those_of_the_flight(self):
         high = [[lon, lat, 1500] for lon, lat, _ in POINTS]

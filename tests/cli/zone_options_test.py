@@ -98,6 +98,14 @@ class Permission(ZoneOptions):
         self.go("--permission", "River", code=2)  # without zones
         _, err = self.go("--avoid", "missing.json", "--permission", "River", code=3)
         self.assertIn("--avoid: missing.json: there is no such file", err)
+        # An identifier that is another zone's name opens neither; said in full, that zone alone.
+        self.airspace("names.json", RIVER, zone("USR9", "USR1", "REQ_AUTHORISATION", box(-84.2, 36.5, 0.01, 0.01)))
+        _, err = self.run_it("check", "mission.plan", "--airspace", "names.json", "--terrain", TERRAIN, "--permission",
+                             "USR1", code=2)
+        self.assertIn("--permission: 'USR1' may be 'USR1 (River)', 'USR9 (USR1)': name each zone that you", err)
+        out, _ = self.run_it("check", "mission.plan", "--airspace", "names.json", "--terrain", TERRAIN, "--permission",
+                             "USR1 (River)")
+        self.assertIn("open by a permission: 'USR1 (River)'\n", out)
         # Of two zones of one name the one that takes a permission is opened, the other is not.
         self.go("--avoid", "zones.json", "none.json", "--permission", "River", "-o", "both")
         scenario = (self.folder / "both/scenario.yaml").read_text()

@@ -185,6 +185,17 @@ Cost price(const Route& route, const Request& request, const std::vector<Goal>& 
     section.start.loiter = goal.loiter;
     tolerance = goal.tolerance_m;
   }
+  constexpr double kRounding = 1 + 1e-6;
+  const bool is_between_ends = via.empty() && !route.empty() &&
+                               route.front() == request.start.position &&
+                               route.back() == request.goal.position;
+  if (request.objective && is_between_ends && cost.bound > cost.cost * kRounding) {
+    throw PluginError(
+        "the objective violated the contract of its interface: no route costs less than " +
+            with_digits(cost.bound, 9) + " by its bounds, and this one costs " +
+            with_digits(cost.cost, 9),
+        Reason::contract);
+  }
   return cost;
 }
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "airspace_parts.hpp"
 #include "last_read.hpp"
@@ -224,16 +225,22 @@ std::string meant(const std::vector<Zone>& zones, const std::string& called) {
 
 std::string permission_problem(const std::vector<Zone>& zones, const std::string& called) {
   std::string closed;
+  std::set<std::string> opened;
   for (const Zone& zone : zones) {
     if (zone.is_called(called) && zone.takes_permission()) {
-      return "";
-    }
-    if (zone.is_called(called)) {
+      opened.insert(zone.label());
+    } else if (zone.is_called(called)) {
       closed = "no permission opens '" + zone.label() + "'" +
                (zone.type.empty() ? "" : " (" + zone.type + ")") + ": it stays closed";
     }
   }
-  return !closed.empty() ? closed : "no zone is called '" + called + "'" + meant(zones, called);
+  if (opened.size() > 1) {
+    return "'" + called + "' may be " + names_text({opened.begin(), opened.end()}) +
+           ": name each zone that you have a permission for in full";
+  }
+  return !opened.empty()   ? ""
+         : !closed.empty() ? closed
+                           : "no zone is called '" + called + "'" + meant(zones, called);
 }
 
 std::string format_name(Airspace::Format format) {

@@ -96,8 +96,8 @@ struct NamedPoint {
   Point2 at{0, 0};  ///< longitude, latitude
 };
 
-/// Why a permission for the zones that are called so opens nothing: none is, with the nearest
-/// names, or none of them takes a permission. "" if one does.
+/// Why a permission for the zone that is called so opens nothing: none is, with the nearest names,
+/// it takes none, or zones with other labels are called so too. "" if it opens a zone.
 ALTIPLAN_API std::string permission_problem(const std::vector<Zone>& zones,
                                             const std::string& called);
 
