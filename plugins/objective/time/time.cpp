@@ -73,13 +73,15 @@ class FlightTime final : public Objective {
   /// As fast as ever possible: straight, or down to the height where no time counts and up again.
   double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
     const Vec3 way = to - from;
-    if (is_by_airspeed(request)) {  // which is horizontal: going down takes no time
+    if (is_by_airspeed(request)) {
+      // An aeroplane's is level: going down takes it no time.
+      const double length = request.vehicle.wing ? way.head<2>().norm() : way.norm();
       double wind = 0;
       for (const Wind::Layer& layer : request.wind.layers) {
         wind = std::max(wind, layer.velocity.norm());
       }
       return params_.above_m ? 0
-                             : std::max(way.head<2>().norm() / (request.air_speed() + wind),
+                             : std::max(length / (request.air_speed() + wind),
                                         request.vehicle.climb_time(way.z()));
     }
     const Vehicle& vehicle = request.vehicle;

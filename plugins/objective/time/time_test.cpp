@@ -54,9 +54,10 @@ TEST(TimeObjective, InWindItIsThatOfTheAirspeed) {
   const Leg leg = Leg::straight({0, 0, 100}, {500, 0, 300});
   const auto time = make_objective("time");
   const auto above = make_objective("time", "{above_m: 200}");
-  EXPECT_DOUBLE_EQ(time->cost(leg, 0, request), 500 / 25.0);
-  EXPECT_DOUBLE_EQ(above->cost(leg, 0, request), 250 / 25.0);
-  EXPECT_DOUBLE_EQ(time->bound(leg.from, leg.to, request), 500 / 25.0);
+  const double seconds = time->cost(leg, 0, request);  // 20 m/s through the air, up as along
+  EXPECT_DOUBLE_EQ(std::hypot(500 / seconds - 5, 200 / seconds), 20);
+  EXPECT_DOUBLE_EQ(above->cost(leg, 0, request), seconds / 2);
+  EXPECT_DOUBLE_EQ(time->bound(leg.from, leg.to, request), std::hypot(500, 200) / 25.0);
   const Leg turn = Leg::turning({{500, 500, 100}, 0.3}, 2, 80, 200);
   EXPECT_DOUBLE_EQ(time->cost(turn, 0, request), leg_duration(turn, request));
   EXPECT_DOUBLE_EQ(above->cost(turn, 0, request), leg_duration(turn, request) / 2);
