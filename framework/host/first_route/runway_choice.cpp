@@ -38,7 +38,8 @@ std::vector<double> RunwayChoice::courses(const Eigen::Vector2d& way,
   const double best = std::round(is_windy ? wish_.wind->from_deg : compass(way));
   std::vector<double> all;
   for (int n = 0; n < kCourses; ++n) {  // to the one side and to the other by turns
-    const double off = 360.0 / kCourses * ((n + 1) / 2) * (n % 2 == 0 ? 1 : -1);
+    const int steps = (n + 1) / 2;
+    const double off = 360.0 / kCourses * (n % 2 == 0 ? steps : -steps);
     all.push_back(std::fmod(best + off + 360, 360));
   }
   return all;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "altiplan/check.hpp"
 #include "altiplan/kit/lattice/move_rules.hpp"
 
 namespace altiplan::kit {
