@@ -145,7 +145,8 @@ inline void expect_no_corners_in_layers(const std::string& planner, const std::s
   EXPECT_GE(solved, count / 3);
 }
 
-/// The `count` routes among towers between loiter circles are valid, and that share of them is found.
+/// The `count` routes among towers between loiter circles are valid, and that share of them is
+/// found.
 inline void expect_loiter_circles_left_and_joined(const std::string& planner, double share,
                                                   std::uint64_t iterations, int count = 10) {
   RandomStream random(11);
