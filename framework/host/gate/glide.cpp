@@ -248,30 +248,14 @@ class GlideJudge {
                                                 " m too low, and no other better";
       finding.at = Vec3(refused.place.at.x(), refused.place.at.y(), refused.place.low_m);
     } else {
-      add_hit(refused, finding);
+      const FlownMission glide = flight_.glide(refused.command, refused.place,
+                                               glide_in(refused.place), target.at.head<2>());
+      names_.add_worst(glide.parts, judge_, finding);
     }
     finding.item = plan_.commands[refused.command].item;
     finding.items = {name_of_command(plan_.commands[refused.command])};
     finding.violation.message = prefix_ + to + ": " + finding.violation.message;
     return finding;
-  }
-
-  void add_hit(const Refused& refused, Finding& finding) {
-    const auto off = [](const Violation& v) { return std::abs(v.value - v.limit); };
-    for (const FlownPart& part : flight_
-                                     .glide(refused.command, refused.place, glide_in(refused.place),
-                                            refused.best.target->at.head<2>())
-                                     .parts) {
-      for (const BandJudge::Found& found : judge_.violations(part)) {
-        if (!finding.at || off(found.violation) > off(finding.violation)) {
-          finding.violation = found.violation;
-          finding.at = found.at;
-          finding.what = part.what;
-        }
-      }
-    }
-    names_.add_to(finding);
-    name_void(finding, world_);
   }
 
   const formats::MissionFile& plan_;

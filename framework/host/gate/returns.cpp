@@ -239,18 +239,7 @@ class ReturnJudge {
                                   " Wh from take-off to its end, where " +
                                   with_decimals(battery_->usable_wh(), 1) + " Wh may be used";
     }
-    const auto off = [](const Violation& v) { return std::abs(v.value - v.limit); };
-    for (const FlownPart& part : home.parts) {
-      for (const BandJudge::Found& found : judge_.violations(part)) {
-        if (!finding.at || off(found.violation) > off(finding.violation)) {
-          finding.violation = found.violation;
-          finding.at = found.at;
-          finding.what = part.what;
-        }
-      }
-    }
-    names_.add_to(finding);
-    name_void(finding, world_);
+    names_.add_worst(home.parts, judge_, finding);
     if (gap < 0 && std::isfinite(gap)) {
       finding.violation.constraint = "ground";
       finding.violation.value = gap;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/violated_zone.hpp"
 
+#include <cmath>
+
 #include "altiplan/ground.hpp"
 
 namespace altiplan::host {
@@ -17,6 +19,22 @@ void ZoneNames::add_to(Finding& finding) {
       finding.violation.message += ": '" + finding.zone + "' of '" + layer->id + "'";
     }
   }
+}
+
+void ZoneNames::add_worst(const std::vector<FlownPart>& parts, const BandJudge& judge,
+                          Finding& finding) {
+  const auto off = [](const Violation& v) { return std::abs(v.value - v.limit); };
+  for (const FlownPart& part : parts) {
+    for (const BandJudge::Found& found : judge.violations(part)) {
+      if (!finding.at || off(found.violation) > off(finding.violation)) {
+        finding.violation = found.violation;
+        finding.at = found.at;
+        finding.what = part.what;
+      }
+    }
+  }
+  add_to(finding);
+  name_void(finding, world_);
 }
 
 bool is_ground_layer(const std::string& id, const World& world) {

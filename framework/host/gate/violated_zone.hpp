@@ -2,8 +2,10 @@
 #pragma once
 
 #include <map>
+#include <vector>
 
 #include "altiplan/drawing.hpp"
+#include "host/gate/band_judge.hpp"
 #include "host/gate/plan_report.hpp"
 
 namespace altiplan::host {
@@ -13,6 +15,8 @@ class ZoneNames {
  public:
   explicit ZoneNames(const World& world) : world_(world) {}
   void add_to(Finding& finding);
+  /// Sets what the judge finds worst on the parts, with its zone or void.
+  void add_worst(const std::vector<FlownPart>& parts, const BandJudge& judge, Finding& finding);
 
  private:
   const World& world_;
