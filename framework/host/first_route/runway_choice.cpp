@@ -13,14 +13,14 @@ namespace altiplan::host {
 namespace {
 
 constexpr int kCourses = 36;
-constexpr double kGlide = 5;         // degrees: the steepest landing of PX4's defaults
-constexpr double kShallowest = 4;    // degrees: an aeroplane of ArduPilot's may climb so little
-constexpr double kHeightStep = 10;   // metres between slopes that are tried,
-constexpr double kMostHigher = 100;  // up to so much above the lowest
-constexpr double kSettles = 20;      // seconds from a turn until it flies along its line, level
-constexpr double kTurnsBefore = 5;   // seconds before a corner at which it turns, at most
-constexpr double kOnward = 600;      // metres flown on straight after a climb
-constexpr double kCalm = 0.5;        // m/s
+constexpr double kGlide = 5;        // degrees: the steepest landing of PX4's defaults
+constexpr double kShallowest = 4;   // degrees: an aeroplane of ArduPilot's may climb so little
+constexpr double kHeightStep = 10;  // metres between slopes that are tried,
+constexpr double kMaxHigher = 100;  // up to so much above the lowest
+constexpr double kSettles = 20;     // seconds from a turn until it flies along its line, level
+constexpr double kTurnsBefore = 5;  // seconds before a corner at which it turns, at most
+constexpr double kOnward = 600;     // metres flown on straight after a climb
+constexpr double kCalm = 0.5;       // m/s
 
 Vec3 along(double course_deg) { return unit_heading(radians(90 - course_deg)); }
 
@@ -47,7 +47,7 @@ std::vector<double> RunwayChoice::courses(const Eigen::Vector2d& way,
 
 std::vector<double> RunwayChoice::slope_heights() const {
   std::vector<double> all;
-  for (double more = 0; more <= kMostHigher; more += kHeightStep) {
+  for (double more = 0; more <= kMaxHigher; more += kHeightStep) {
     all.push_back(std::ceil(first_.heights().ends_m + more));
   }
   return all;
@@ -72,8 +72,8 @@ TakeOffEntry RunwayChoice::takeoff_on(double course_deg, double height_m) const 
 
 bool RunwayChoice::may_pass(const Polyline& line, const Runways& runways) const {
   Request request = world_.request;
-  auto& least = request.limits.min_ground_clearance;
-  least = least.value_or(0) + first_.flown_margin();
+  auto& minimum = request.limits.min_ground_clearance;
+  minimum = minimum.value_or(0) + first_.flown_margin();
   request.limits.min_clearance = std::max(request.limits.min_clearance, first_.clearance_m());
   request.start = {0, line.front(), Vec3::Zero(), std::nullopt};
   request.goal = {line.back()};
