@@ -141,13 +141,26 @@ bool BandJudge::is_clear(std::span<const Strip> strips) const {
 
 bool BandJudge::look_at_suspects(std::span<const Strip> strips,
                                  const std::function<bool(const Line&)>& look) const {
-  if (strips.size() < 2) {
-    const std::vector<Line> lines = lines_of(strips.front(), false);
-    return std::all_of(lines.begin(), lines.end(), look);
+  if (strips.size() > 1) {
+    const std::size_t half = strips.size() / 2;
+    return is_clear(strips) || (look_at_suspects(strips.first(half), look) &&
+                                look_at_suspects(strips.subspan(half), look));
   }
-  const std::size_t half = strips.size() / 2;
-  return is_clear(strips) || (look_at_suspects(strips.first(half), look) &&
-                              look_at_suspects(strips.subspan(half), look));
+  // A high strip as its lower and its upper half.
+  const Strip& strip = strips.front();
+  if (std::max(strip.from_high_m - strip.from.z(), strip.to_high_m - strip.to.z()) > 2 * kRise) {
+    if (is_clear(strips)) {
+      return true;
+    }
+    Strip lower = strip;
+    Strip upper = strip;
+    lower.from_high_m = upper.from.z() = (strip.from.z() + strip.from_high_m) / 2;
+    lower.to_high_m = upper.to.z() = (strip.to.z() + strip.to_high_m) / 2;
+    return look_at_suspects(std::span(&lower, 1), look) &&
+           look_at_suspects(std::span(&upper, 1), look);
+  }
+  const std::vector<Line> lines = lines_of(strip, false);
+  return std::all_of(lines.begin(), lines.end(), look);
 }
 
 std::vector<BandJudge::Line> BandJudge::lines_of(const Strip& strip, bool has_ground) {

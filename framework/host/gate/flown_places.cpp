@@ -1,55 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/flown_places.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace altiplan::host {
 namespace {
 
 constexpr double kCoarse = 60;  // metres: radius
 
-/// The smallest disc about the middle of the strips' box, with their reach.
-Whereabouts around(std::span<const Strip> strips) {
-  Eigen::Vector2d minimum(kInfinity, kInfinity);
-  Eigen::Vector2d maximum = -minimum;
-  double reach = 0;
-  Whereabouts place{{0, 0}, 0, kInfinity, -kInfinity};
-  for (const Strip& strip : strips) {
-    for (const Vec3& end : {strip.from, strip.to}) {
-      minimum = minimum.cwiseMin(end.head<2>());
-      maximum = maximum.cwiseMax(end.head<2>());
+using Area = Eigen::AlignedBox<double, 2>;
+
+/// The part of a strip's line in an area; nothing where it is outside.
+std::optional<Strip> within(const Strip& strip, const Area& area) {
+  const Eigen::Vector2d from = strip.from.head<2>();
+  const Eigen::Vector2d way = strip.to.head<2>() - from;
+  double begin = 0;
+  double end = 1;
+  for (const int axis : {0, 1}) {
+    if (way[axis] != 0) {
+      const double low = (area.min()[axis] - from[axis]) / way[axis];
+      const double high = (area.max()[axis] - from[axis]) / way[axis];
+      begin = std::max(begin, std::min(low, high));
+      end = std::min(end, std::max(low, high));
+    } else if (from[axis] < area.min()[axis] || from[axis] > area.max()[axis]) {
+      return std::nullopt;
     }
-    reach = std::max(reach, strip.reach_m);
-    place.low_m = std::min({place.low_m, strip.from.z(), strip.to.z()});
-    place.high_m = std::max({place.high_m, strip.from_high_m, strip.to_high_m});
   }
-  place.at = (minimum + maximum) / 2;
-  place.radius_m = (maximum - minimum).norm() / 2 + reach;
-  return place;
+  if (begin > end) {
+    return std::nullopt;
+  }
+  Strip part = strip;
+  part.from = strip.from + begin * (strip.to - strip.from);
+  part.to = strip.from + end * (strip.to - strip.from);
+  part.from_high_m = strip.from_high_m + begin * (strip.to_high_m - strip.from_high_m);
+  part.to_high_m = strip.from_high_m + end * (strip.to_high_m - strip.from_high_m);
+  return part;
 }
 
-std::array<Strip, 2> halves(const Strip& strip) {
-  Strip first = strip;
-  Strip second = strip;
-  first.to = second.from = (strip.from + strip.to) / 2;
-  first.to_high_m = second.from_high_m = (strip.from_high_m + strip.to_high_m) / 2;
-  return {first, second};
-}
+/// What strips fly of an area.
+struct FlownArea {
+  Area area;
+  double low_m = kInfinity;
+  double high_m = -kInfinity;
+  double reach_m = 0;
+  std::vector<const Strip*> strips;
 
-void judge_strips(std::span<const Strip> strips, double finest_m,
-                  const FlownPlaces::Judge& is_valid, const FlownPlaces::Refuse& refuse) {
-  const Whereabouts place = around(strips);
+  FlownArea(std::span<const Strip* const> all, const Area& whole) {
+    for (const Strip* strip : all) {
+      const Eigen::Vector2d reach(strip->reach_m, strip->reach_m);
+      if (const auto part = within(*strip, Area(whole.min() - reach, whole.max() + reach))) {
+        for (const Vec3& end : {part->from, part->to}) {
+          area.extend(Area(end.head<2>() - reach, end.head<2>() + reach));
+        }
+        low_m = std::min({low_m, part->from.z(), part->to.z()});
+        high_m = std::max({high_m, part->from_high_m, part->to_high_m});
+        reach_m = std::max(reach_m, strip->reach_m);
+        strips.push_back(strip);
+      }
+    }
+    area = area.intersection(whole);
+  }
+};
+
+void judge_area(std::span<const Strip* const> strips, const Area& whole, double finest_m,
+                const FlownPlaces::Judge& is_valid, const FlownPlaces::Refuse& refuse) {
+  const FlownArea flown(strips, whole);
+  if (flown.strips.empty()) {
+    return;
+  }
+  const Area& area = flown.area;
+  const Whereabouts place{area.center(), area.diagonal().norm() / 2, flown.low_m, flown.high_m};
   if (place.radius_m <= kCoarse && is_valid(place)) {
     return;
   }
-  if (strips.size() > 1) {
-    judge_strips(strips.first(strips.size() / 2), finest_m, is_valid, refuse);
-    judge_strips(strips.subspan(strips.size() / 2), finest_m, is_valid, refuse);
-  } else if ((strips.front().to - strips.front().from).head<2>().norm() > finest_m) {
-    for (const Strip& half : halves(strips.front())) {
-      judge_strips(std::span(&half, 1), finest_m, is_valid, refuse);
-    }
+  if (place.radius_m > finest_m / 2 + flown.reach_m) {
+    const int axis = area.sizes().x() > area.sizes().y() ? 0 : 1;
+    Area first = area;
+    Area second = area;
+    first.max()[axis] = second.min()[axis] = area.center()[axis];
+    judge_area(flown.strips, first, finest_m, is_valid, refuse);
+    judge_area(flown.strips, second, finest_m, is_valid, refuse);
   } else if (place.radius_m <= kCoarse || !is_valid(place)) {
     refuse(place);
   }
@@ -70,7 +103,16 @@ FlownPlaces::FlownPlaces(const FlownPart& part, std::array<double, 2> time_s,
       to_(to) {}
 
 void FlownPlaces::judge(double finest_m, const Judge& is_valid, const Refuse& refuse) const {
-  judge_strips(part_->strips, finest_m, is_valid, refuse);
+  std::vector<const Strip*> strips;
+  Area area;
+  for (const Strip& strip : part_->strips) {
+    const Eigen::Vector2d reach(strip.reach_m, strip.reach_m);
+    for (const Vec3& end : {strip.from, strip.to}) {
+      area.extend(Area(end.head<2>() - reach, end.head<2>() + reach));
+    }
+    strips.push_back(&strip);
+  }
+  judge_area(strips, area, finest_m, is_valid, refuse);
 }
 
 double FlownPlaces::share_of(const Whereabouts& place, double beyond_m, double unknown) const {

@@ -130,30 +130,12 @@ class GlideJudge {
     return flight_.glide_in(place, report_.ratio, lowest_m_);
   }
 
-  /// A disc about a node of a grid, which holds the place: most of a band's places lie in the same.
-  static Whereabouts widened(const Whereabouts& place) {
-    const double apart = std::exp2(std::round(std::log2(std::max(place.radius_m, 4.0) / 2)));
-    const double level = apart / 8;
-    const auto node = [&](double at) { return std::round(at / apart) * apart; };
-    return {{node(place.at.x()), node(place.at.y())},
-            place.radius_m + apart,
-            std::floor(place.low_m / level) * level,
-            std::ceil(place.high_m / level) * level};
-  }
-
   bool is_reached(const FlownPlaces& places, const Whereabouts& place) {
-    const Whereabouts wide = widened(place);
-    Known& known = known_[{wide.at.x(), wide.at.y(), wide.low_m, wide.high_m}];
-    if (wide.radius_m > known.radius_m && wide.radius_m < known.failed_m) {
-      const auto reached = reached_from(places.part().command, wide);
-      known.best = reached ? reached : known.best;
-      (reached ? known.radius_m : known.failed_m) = wide.radius_m;
+    const std::optional<Candidate> reached = reached_from(places.part().command, place);
+    if (reached) {
+      add_reached(places, place, *reached);
     }
-    const bool is_known = wide.radius_m <= known.radius_m;
-    if (is_known) {
-      add_reached(places, place, *known.best);
-    }
-    return is_known;
+    return reached.has_value();
   }
 
   /// The site above which the glide is the highest, of those that it reaches.
@@ -204,9 +186,8 @@ class GlideJudge {
   }
 
   void refuse(const FlownPlaces& places, const Whereabouts& place) {
-    const Whereabouts wide = widened(place);
-    refused_.push_back({places.times_of(place, kGlideFinest), places.part().command, wide,
-                        candidates(wide, glide_in(wide)).front()});
+    refused_.push_back({places.times_of(place, kGlideFinest), places.part().command, place,
+                        candidates(place, glide_in(place)).front()});
   }
 
   /// Stretches of refused places, as those of returns.
@@ -269,13 +250,6 @@ class GlideJudge {
   double lowest_m_ = kInfinity;
   std::vector<Refused> refused_;
   std::vector<GlideStretch> places_;  ///< whence a site is reached
-  /// The radius within which a site is reached, and one within which none is.
-  struct Known {
-    double radius_m = -1;
-    double failed_m = kInfinity;
-    std::optional<Candidate> best;
-  };
-  std::map<std::array<double, 4>, Known> known_;  ///< by node and heights
   std::vector<Parameters::Used> parameters_;
 };
 
