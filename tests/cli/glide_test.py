@@ -133,6 +133,10 @@ class Glide(PlanCase):
         self.zones("z.json", self.around(*self.place(0, 60), 0.0002), 800)
         told = json.loads(self.judge("--airspace", "z.json", code=1))
         self.assertTrue(told["returns"]["glide"]["refused"], told)
+        # And one below that circle, in which it would come down.
+        self.zones("z.json", self.around(*self.place(0, 60), 0.0002), 410)
+        glide = json.loads(self.judge("--airspace", "z.json", code=1))["returns"]["glide"]
+        self.assertEqual((glide["verdict"], glide["refused"][0]["zone"]), ("fail", "Z"))
 
     def test_areas_and_kml(self):
         self.mission(self.BEYOND)

@@ -63,6 +63,16 @@ class Returns(PlanCase):
         self.assertAlmostEqual(returns["refused"][0]["value"], 60 - 200, delta=20)
         self.assertEqual(returns["parameters"]["RTL_ALT_M"], 15)
 
+    def test_a_return_over_a_void(self):
+        """The mission flies around a void, its return over it: what is unknown is no depth below the ground."""
+        lines = (self.folder / "ridge.asc").read_text().splitlines()
+        for row in range(6 + 25, 6 + 29):
+            lines[row] = " ".join("-9999" if 46 <= n < 50 else height for n, height in enumerate(lines[row].split()))
+        (self.folder / "ridge.asc").write_text("\n".join(lines) + "\n")
+        told = self.returns(COPTER, [(22, 0, 0, 100), (16, 0, 700, 100), (16, 600, 700, 100), (16, 600, 300, 100)], code=1)
+        self.assertEqual(told["verdict"], "pass", told["violations"])
+        self.assertIn("passes over a void", told["returns"]["refused"][0]["message"])
+
     def test_a_return_height_that_is_high_enough(self):
         for parameters in ({"RTL_ALT": 23000}, {"RTL_ALT_M": 230}):
             told = self.returns(COPTER, self.beyond(), parameters=parameters, code=0)

@@ -27,8 +27,8 @@ Glide FailsafeReturns::glide_in(const Whereabouts& place, double ratio, double l
 }
 
 FlownMission FailsafeReturns::glide(std::size_t command, const Whereabouts& place,
-                                    const Glide& glide, const Eigen::Vector2d& to) const {
-  return walker_->glide(command, place, glide, to);
+                                    const Glide& glide, const Vec3& site) const {
+  return walker_->glide(command, place, glide, site);
 }
 
 // It may be as fast as the mission has it fly anywhere.
@@ -73,9 +73,10 @@ Glide Walker::glide_in(const Whereabouts& place, double ratio, double lowest_m) 
 }
 
 FlownMission Walker::glide(std::size_t n, const Whereabouts& place, const Glide& glide,
-                           const Eigen::Vector2d& to) {
+                           const Vec3& site) {
   mission_ = FlownMission{};
   mission_.autopilot = autopilot_;
+  const Eigen::Vector2d to = site.head<2>();
   flight_.before = n;
   flight_.begin(n, "the glide");
   const double length = (to - place.at).norm();
@@ -86,8 +87,11 @@ FlownMission Walker::glide(std::size_t n, const Whereabouts& place, const Glide&
                    {there_m, place.low_m - glide.lost_m(there_m), high}},
                   kBesideGlide);
   flight_.begin(n, "the circle over its site");
-  flight_.add_tower({to, glide.circle_m, 0, 0}, place.low_m - glide.lost_m(length), high,
-                    kBesideGlide);
+  const double low = place.low_m - glide.lost_m(length);
+  flight_.add_tower({to, glide.circle_m, 0, 0}, low, high, kBesideGlide);
+  // Somewhere below it comes down, which zones may close; the ground is the site's.
+  flight_.begin(n, "the way down to its site").ground = FlownPart::Ground::touched_from_above;
+  flight_.add_tower({to, glide.circle_m, 0, 0}, std::min(site.z(), low), low, kBesideGlide);
   mission_.parameters = parameters_.used();
   return std::move(mission_);
 }

@@ -52,10 +52,10 @@ class FailsafeReturns {
   /// Of an aeroplane that glides so far in still air (metres on per metre of height), at the speeds
   /// that it may have; sites are not lower than `lowest_m`.
   Glide glide_in(const Whereabouts& place, double ratio, double lowest_m) const;
-  /// The glide to a place above a site, and a circle there. It may sink less, and is as high as at
-  /// its beginning at the most.
+  /// The glide to a place above a site, a circle there, and the air below it down to the site. It
+  /// may sink less, and is as high as at its beginning at the most.
   FlownMission glide(std::size_t command, const Whereabouts& place, const Glide& glide,
-                     const Eigen::Vector2d& to) const;
+                     const Vec3& site) const;
 
  private:
   std::unique_ptr<Walker> walker_;

@@ -30,8 +30,7 @@ class Walker {
   /// As FailsafeReturns has it, after the mission was flown.
   FlownMission return_from(std::size_t n, const Whereabouts& place);
   Glide glide_in(const Whereabouts& place, double ratio, double lowest_m);
-  FlownMission glide(std::size_t n, const Whereabouts& place, const Glide& glide,
-                     const Eigen::Vector2d& to);
+  FlownMission glide(std::size_t n, const Whereabouts& place, const Glide& glide, const Vec3& site);
 
  private:
   bool is_px4() const { return autopilot_.is_px4(); }

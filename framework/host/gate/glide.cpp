@@ -145,8 +145,7 @@ class GlideJudge {
       if (!(candidate.margin_m >= 0)) {
         break;
       }
-      const FlownMission flown =
-          flight_.glide(command, place, glide, candidate.target->at.head<2>());
+      const FlownMission flown = flight_.glide(command, place, glide, candidate.target->at);
       parameters_ = flown.parameters;
       if (std::all_of(flown.parts.begin(), flown.parts.end(),
                       [&](const FlownPart& part) { return judge_.is_valid(part); })) {
@@ -229,8 +228,8 @@ class GlideJudge {
                                                 " m too low, and no other better";
       finding.at = Vec3(refused.place.at.x(), refused.place.at.y(), refused.place.low_m);
     } else {
-      const FlownMission glide = flight_.glide(refused.command, refused.place,
-                                               glide_in(refused.place), target.at.head<2>());
+      const FlownMission glide =
+          flight_.glide(refused.command, refused.place, glide_in(refused.place), target.at);
       names_.add_worst(glide.parts, judge_, finding);
     }
     finding.item = plan_.commands[refused.command].item;

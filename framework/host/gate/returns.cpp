@@ -240,7 +240,7 @@ class ReturnJudge {
                                   with_decimals(battery_->usable_wh(), 1) + " Wh may be used";
     }
     names_.add_worst(home.parts, judge_, finding);
-    if (gap < 0 && std::isfinite(gap)) {
+    if (gap < 0 && std::isfinite(gap) && !finding.is_over_void) {
       finding.violation.constraint = "ground";
       finding.violation.value = gap;
       finding.violation.limit = 0;
