@@ -31,8 +31,16 @@ double Objective::cost(const Leg& leg, double time_s, const Request& request) co
 }
 
 double Objective::bound(const Vec3& from, const Vec3& to, const Request& request) const {
-  return at_least_zero(attributed(objective_text, [&] { return do_bound(from, to, request); }),
-                       "the bound between two places");
+  const double bound =
+      at_least_zero(attributed(objective_text, [&] { return do_bound(from, to, request); }),
+                    "the bound between two places");
+  constexpr double kRounding = 1e-9;
+  if (from == to && bound > kRounding) {
+    throw PluginError("the objective violated the contract of its interface: the bound from a " +
+                          ("place to itself is " + std::to_string(bound)) + ", expected 0",
+                      Reason::contract);
+  }
+  return bound;
 }
 
 std::vector<double> Objective::costs(const Route& route, const Request& request) const {
