@@ -315,6 +315,161 @@ TEST(FlownMission, ATurnWithoutARadiusIsFlownAtThePresentHeight) {
   EXPECT_TRUE(has_rule(fly({command(22, 0, 0, 50), turn}, kCopter), "not_judged"));
 }
 
+/// Flown in ArduPilot's simulation with these.
+FlightOptions flown_options(double airspeed) {
+  FlightOptions options;
+  options.parameters = {{"AIRSPEED_CRUISE", airspeed},
+                        {"WP_RADIUS", 50},
+                        {"NAVL1_PERIOD", 15},
+                        {"ROLL_LIMIT_DEG", 65}};
+  return options;
+}
+
+TEST(FlownMission, AnOrderThatAJumpLeadsToHidesTheRound) {
+  // It leaves its circle toward the item behind the jump, and flies to the one of the round.
+  constexpr double kHigh = 1160;
+  MissionCommand circle = command(18, 0, 0, kHigh);
+  circle.params = {1, 0, -60, 0};
+  const auto flown = [&](double target) {
+    return fly(
+        {command(16, 708, 112, kHigh), order(178, {0, 18, -1, 0}), command(16, 1500, 72, kHigh),
+         circle, order(177, {target, 1, 0, 0}), command(16, -500, -27, kHigh)},
+        kPlane, flown_options(18));
+  };
+  EXPECT_LT(outside(flown(2), -59, 150, kHigh), 0.1);
+  EXPECT_LT(outside(flown(2), -24, 171, kHigh), 0.1);
+  EXPECT_GT(outside(flown(3), -24, 171, kHigh), 20);
+}
+
+TEST(FlownMission, APlanePassesByOnTheLineBeyondItsItem) {
+  MissionCommand circle = command(31, -1081, 0, 116);
+  circle.params = {0, -150, 0, 0};
+  MissionCommand passed = command(16, 0, 0, 116);
+  passed.params = {0, 20, 40, 0};
+  MissionCommand last = command(31, -140, 750, 132);
+  last.params = circle.params;
+  const FlownMission flown =
+      fly({command(16, -1500, -840, 100), circle, passed, order(178, {0, 18, -1, 0}), last}, kPlane,
+          flown_options(22));
+  for (const double beyond : {4.0, 8.0, 12.0, 16.0, 20.0}) {
+    EXPECT_LT(outside(flown, beyond, 0, 116), 0.1) << beyond;
+  }
+}
+
+TEST(FlownMission, APlaneAboveItsClimbBeginsItAnew) {
+  MissionCommand last = command(16, 560, -207, 76);
+  last.params = {0, 20, 0, 0};
+  const FlownMission flown =
+      fly({command(16, -679, 0, 108), command(16, 0, 0, 60), last}, kPlane, flown_options(22));
+  EXPECT_LT(outside(flown, 141, -52, 74), 0.1);  // 10 m of climb were left: at once
+  const FlownMission from_level =
+      fly({command(16, -679, 0, 60), command(16, 0, 0, 60), last}, kPlane, flown_options(22));
+  EXPECT_GT(outside(from_level, 141, -52, 74), 1);
+}
+
+TEST(FlownMission, ACopterFasterThanItsOwnSpeedLeavesACircle) {
+  const auto circled = [](double radius) {
+    MissionCommand circle = command(18, 400, 0, 50);
+    circle.params = {1, 0, radius, 0};
+    return fly({command(22, 0, 0, 50), order(178, {1, 15, -1, 0}), circle}, kCopter);
+  };
+  EXPECT_TRUE(has_rule(circled(120), "not_judged"));  // 12.2 m/s: flown with 158 m of radius
+  EXPECT_FALSE(has_rule(circled(60), "not_judged"));
+}
+
+/// Rises to the east.
+class Slope final : public Environment, public Ground {
+ public:
+  explicit Slope(double slope) : slope_(slope) {}
+
+ private:
+  double height_at(double x) const { return kHome + slope_ * x; }
+  Box do_bounds() const override { return {{-1e4, -1e4, 0}, {1e4, 1e4, 1000}}; }
+  double do_clearance(const Vec3& p) const override { return p.z() - height_at(p.x()); }
+  const Ground* do_ground() const override { return this; }
+  std::optional<double> do_height(double x, double) const override { return height_at(x); }
+  double do_gap(const Vec3& a, const Vec3& b, double) const override {
+    return std::min(a.z() - height_at(a.x()), b.z() - height_at(b.x()));
+  }
+  double slope_;
+};
+
+World rising(double slope) {
+  return altiplan::testing::world_of(std::make_shared<Slope>(slope), "slope")
+      .with_frame(flat().frame());
+}
+
+TEST(FlownMission, AReturnFromACircleAboveTheGroundIsLevel) {
+  MissionCommand circle = command(18, 300, 0, 20, 10);
+  circle.params = {1, 0, 20, 0};
+  FlightOptions options;
+  options.parameters["RTL_ALT_M"] = 80;
+  const FlownMission flown =
+      fly({command(22, 0, 0, 20), circle, order(20, {0, 0, 0, 0})}, kCopter, options, rising(0.1));
+  EXPECT_LT(outside(flown, 200, 0, 80), 0.1);
+  EXPECT_LT(outside(flown, 100, 0, 80), 0.1);
+  EXPECT_GT(outside(flown, 100, 0, 60), 5);
+}
+
+TEST(FlownMission, ACopterDoesNotSlowDownOnACircleAboveTheGround) {
+  MissionCommand circle = command(18, 300, 0, 85, 10);
+  circle.params = {1, 0, 60, 0};
+  const FlownMission flown = fly({command(22, 0, 0, 200), circle}, kCopter, {}, rising(0.8));
+  const double sought = 0.8 * 240 + 85;
+  EXPECT_LT(outside(flown, 240, 0, sought + 25), 0.1);  // it sinks slower than the ground
+  EXPECT_GT(outside(flown, 240, 0, sought + 100), 10);
+}
+
+TEST(FlownMission, APlaneLeavesItsTurnsBelowTheirHeight) {
+  MissionCommand circle = command(18, 400, 0, 600);
+  circle.params = {1, 0, 60, 0};
+  const FlownMission flown =
+      fly({command(16, 0, 0, 100), circle, command(16, 3000, 0, 600)}, kPlane);
+  EXPECT_LT(outside(flown, 700, 0, 450), 0.1);
+  circle.number = 31;  // to its height
+  circle.params = {0, 60, 0, 0};
+  const FlownMission high =
+      fly({command(16, 0, 0, 100), circle, command(16, 3000, 0, 600)}, kPlane);
+  EXPECT_GT(outside(high, 700, 0, 450), 100);
+}
+
+TEST(FlownMission, ARampFromAboveTheGroundIsCut) {
+  // The number 200, as if it were metres above the sea, is below the item.
+  const FlownMission flown =
+      fly({command(16, -1000, 0, 200, 10), command(16, 0, 0, 200, 10), command(16, 1500, 0, 120)},
+          kPlane, {}, rising(0.05));
+  EXPECT_LT(outside(flown, 700, 0, 122), 0.1);
+  EXPECT_LT(outside(flown, 700, 0, 160), 0.1);
+}
+
+TEST(FlownMission, AReturnSinksFromThePresentHeight) {
+  // It arrives some 190 m high at the second item.
+  const FlownMission flown =
+      fly({command(16, 3000, 0, 300), command(16, 3300, 0, 100), order(20, {0, 0, 0, 0})}, kPlane);
+  EXPECT_LT(outside(flown, 1650, 0, 140), 0.1);
+  EXPECT_GT(outside(flown, 1650, 0, 240), 50);
+}
+
+TEST(FlownMission, AMinimumGroundSpeedStays) {
+  const auto fastest = [](const MissionCommand& first, const MissionCommand& second) {
+    const FlownMission flown = fly({command(16, -2000, 0, 100), first, second,
+                                    command(16, 0, 0, 100), command(16, 2000, 0, 100)},
+                                   kPlane);
+    const std::size_t last = flown.parts.size() - 1;
+    for (std::size_t n = 1; n <= last; ++n) {
+      if (flown.parts[n].command == 4) {
+        return flown.parts[n].time.min_s - flown.parts[n - 1].time.min_s;
+      }
+    }
+    return 0.0;
+  };
+  const MissionCommand ground = order(178, {1, 20, -1, 0});
+  const MissionCommand slow = order(178, {0, 10, -1, 0});
+  EXPECT_LT(fastest(ground, slow), 2000 / 19.0);
+  EXPECT_LT(fastest(order(178, {0, 20, -1, 0}), order(178, {1, 15, -1, 0})), 2000 / 19.0);
+  EXPECT_GT(fastest(slow, slow), 2000 / 13.0);
+}
+
 /// Level but for one peak, 40 m high.
 class Peak final : public Environment, public Ground {
  public:

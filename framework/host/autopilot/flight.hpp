@@ -127,9 +127,12 @@ class Hover {
   void cut_corner(const Eigen::Vector2d& to, double z);
   /// Where the next way may begin: about the present place, if this is on a circle.
   std::vector<Eigen::Vector2d> leave_circle();
+  /// The lowest and the highest at a place where it leaves its circle.
+  std::array<double, 2> heights_at(const Eigen::Vector2d& place) const;
   void follow_ground(const Destination& to);
-  /// How far below or above it is on a circle above the ground.
-  double lag_on_circle(const Eigen::Vector2d& centre, double radius, double v) const;
+  /// How far below and above it is on a circle above the ground.
+  std::array<double, 2> lags_on_circle(const Eigen::Vector2d& centre, double radius,
+                                       double v) const;
   double climb_rate() const;
   double sink_rate() const;
   /// Adds what lies within a distance of a leg, level with it.
@@ -140,7 +143,7 @@ class Hover {
   /// The circle that is flown, and how far (metres) beyond its beginning it may be left.
   struct Left {
     Destination centre;
-    double lag_m;  ///< above the ground
+    std::array<double, 2> lags_m;  ///< below and above its height above the ground
     double radius;
     double speed_mps;
     double begun;  ///< bearing from the centre
@@ -185,9 +188,15 @@ class Wing {
   double farthest_turn(double z) const { return l1_s_ * true_speed(1, z); }
   /// The next leg is flown from where the vehicle is, not along the line from the item before.
   void leave_track() { has_track_ = false; }
-  /// Flies to a circle and around it, and leaves it toward `next`.
+  /// How long it stays on a circle.
+  struct Stay {
+    double turns = 0;
+    double seconds = 0;
+    bool until_high = true;  ///< and until its height is reached
+  };
+  /// Flies around a circle, and leaves it toward `next`.
   void circle(std::size_t command, const char* what, const Destination& centre, double radius,
-              bool clockwise, double turns, double seconds, const std::optional<Destination>& next,
+              bool clockwise, const Stay& stay, const std::optional<Destination>& next,
               bool leaves_on_tangent);
   /// Is anywhere in a place, on any heading.
   void be_anywhere(const Whereabouts& place);
@@ -244,15 +253,20 @@ class Wing {
   /// Adds what lies between neighbours, of which one turns later or is faster.
   void fill_between(const std::vector<std::vector<Passed>>& passed);
   /// The lowest and the highest, of a share of the leg.
-  std::array<double, 2> sought_heights(const Leg& leg, const Eigen::Vector2d& at,
-                                       double share) const;
-  double sought_height(const Leg& leg, double share) const;
+  std::array<double, 2> sought_heights(const Leg& leg, const Destination& from,
+                                       const Eigen::Vector2d& at, double share) const;
+  double sought_height(const Leg& leg, const Destination& from, double start, double to,
+                       double share) const;
+  /// The lowest and the highest of a destination, above the ground of a place.
+  std::array<double, 2> heights_at(const Destination& to, const Eigen::Vector2d& at) const;
   /// ArduPilot climbs at half its rate before the ground rises.
-  double highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
-                       double left, double v) const;
+  double highest_ahead(const Leg& leg, const Destination& from, const Eigen::Vector2d& at,
+                       const Eigen::Vector2d& track, double left, double v) const;
   /// Of a height that is sought slowly, and of the highest that may be.
   void seek_heights(Member& member, double sought, double highest, double seconds,
-                    bool turns) const;
+                    double slow_climb) const;
+  /// The slowest climb, of the greatest rate.
+  double slow_climb_of(bool turns) const;
   void circle_until_high(std::size_t command, const Leg& leg);
   /// The lowest slope of a landing: from the height at its beginning to a point so far before its
   /// end, and so high above it.

@@ -22,7 +22,7 @@ struct LaggingGround {
   double z;
   double rate = 0;
 
-  double follow(double ground, double seconds, double sink, double climb) {
+  double follow(double ground, double seconds, double sink, double climb, double margin) {
     constexpr double kStep = 0.2;
     const int steps = int(std::ceil(seconds / kStep));
     const double dt = seconds / steps;
@@ -31,7 +31,7 @@ struct LaggingGround {
       rate += std::clamp(wanted - rate, -dt, dt);
       z += rate * dt;
     }
-    z = std::clamp(z, ground - kTerrainMargin, ground + kTerrainMargin);
+    z = std::clamp(z, ground - margin, ground + margin);
     return z;
   }
 };
@@ -73,10 +73,13 @@ double Hover::reach(double acceptance) const {
 void Hover::climb(std::size_t command, const char* what, double low_m, double high_m) {
   flight_.begin(command, what).ground =
       is_on_ground ? FlownPart::Ground::touched_from_above : FlownPart::Ground::kept_off;
-  const double bottom = std::min(low, low_m);
-  const double top = std::max(high, high_m);
   for (const Eigen::Vector2d& place : leave_circle()) {
-    flight_.add_column(place, bottom, top, std::min(reach(), 2.0));
+    const auto [bottom, top] = heights_at(place);
+    flight_.add_column(place, std::min(bottom, low_m), std::max(top, high_m),
+                       std::min(reach(), 2.0));
+  }
+  if (left_) {
+    left_->centre.above_ground.reset();
   }
   const double minimum = std::max({low_m - high, low - high_m, 0.0});
   const double maximum = std::max(high_m - low, high - low_m);
@@ -167,6 +170,16 @@ std::vector<Eigen::Vector2d> Hover::leave_circle() {
   return places;
 }
 
+std::array<double, 2> Hover::heights_at(const Eigen::Vector2d& place) const {
+  if (!left_ || !left_->centre.above_ground) {
+    return {low, high};
+  }
+  const auto grounds = flight_.known_grounds(place);
+  const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+  return {lowest + *left_->centre.above_ground - left_->lags_m[0],
+          highest + *left_->centre.above_ground + left_->lags_m[1]};
+}
+
 void Hover::go_on_circling(double seconds) {
   if (left_) {
     left_->to_m += seconds * left_->speed_mps;
@@ -189,7 +202,7 @@ void Hover::follow_ground(const Destination& to) {
     double highest = -kInfinity;
     for (int ground : {0, 1}) {
       const double z = lagging[ground].follow(grounds[ground], length / steps / speed_mps[1],
-                                              sink_rate(), climb_rate());
+                                              sink_rate(), climb_rate(), kTerrainMargin);
       for (const double start : starts) {
         const double before_above = start - begun[ground];
         const double above = before_above + part * (*to.above_ground - before_above);
@@ -242,13 +255,9 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
   const Hover begun = *this;
   for (const Eigen::Vector2d& place : leave_circle()) {
     at = place;
-    low = begun.low;
-    high = begun.high;
-    if (left_ && left_->centre.above_ground) {
-      const auto grounds = flight_.known_grounds(at);
-      low = std::min(grounds[0], grounds[1]) + *left_->centre.above_ground - left_->lag_m;
-      high = std::max(grounds[0], grounds[1]) + *left_->centre.above_ground + left_->lag_m;
-    }
+    const auto [begin_low, begin_high] = begun.heights_at(place);
+    low = begin_low;
+    high = begin_high;
     if (to.above_ground) {
       follow_ground(to);
     } else {
@@ -301,12 +310,15 @@ void Hover::arc(std::size_t command, const Destination& to, double angle) {
   left_.reset();
 }
 
-double Hover::lag_on_circle(const Eigen::Vector2d& centre, double radius, double v) const {
+// It does not slow down there.
+std::array<double, 2> Hover::lags_on_circle(const Eigen::Vector2d& centre, double radius,
+                                            double v) const {
   constexpr int kSides = 48;
-  double lag = 0;
+  constexpr int kRounds = 3;  // the first ones bring it into step
+  std::array<double, 2> lags{0, 0};
   for (const double sense : {-1.0, 1.0}) {
     LaggingGround lagging[2] = {{0}, {0}};
-    for (int side = 0; side <= 2 * kSides; ++side) {  // the first round brings it into step
+    for (int side = 0; side <= kRounds * kSides; ++side) {
       const double angle = sense * 2 * kPi * side / kSides;
       const auto grounds = flight_.known_grounds(
           centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
@@ -315,12 +327,13 @@ double Hover::lag_on_circle(const Eigen::Vector2d& centre, double radius, double
           lagging[ground].z = grounds[ground];
         }
         const double z = lagging[ground].follow(grounds[ground], 2 * kPi * radius / kSides / v,
-                                                sink_rate(), climb_rate());
-        lag = std::max(lag, std::abs(z - grounds[ground]));
+                                                sink_rate(), climb_rate(), kInfinity);
+        lags[0] = std::max(lags[0], grounds[ground] - z);
+        lags[1] = std::max(lags[1], z - grounds[ground]);
       }
     }
   }
-  return lag;
+  return lags;
 }
 
 void Hover::circle(std::size_t command, const Destination& centre, double radius, double turns,
@@ -343,10 +356,10 @@ void Hover::circle(std::size_t command, const Destination& centre, double radius
   flight_.begin(command, "its circle");
   const double v = std::min({speed_mps[0], std::sqrt(0.5 * 2.5 * radius), radians(20) * radius});
   const double inner = is_from_centre ? 0 : radius;
-  double lag = 0;
+  std::array<double, 2> lags{0, 0};
   if (centre.above_ground) {
-    lag = lag_on_circle(centre.at, radius, v);
-    flight_.add_disc(centre, inner, radius, -lag, lag);
+    lags = lags_on_circle(centre.at, radius, v);
+    flight_.add_disc(centre, inner, radius, -lags[0], lags[1]);
   } else {
     flight_.add_disc(centre, inner, radius, std::min(low, edge.low), std::max(high, edge.high));
   }
@@ -360,9 +373,19 @@ void Hover::circle(std::size_t command, const Destination& centre, double radius
   previous_.reset();
   stops = true;
   const double beyond = 2 * kPi * radius * (turns - std::floor(turns));
-  left_ = Left{centre, lag, radius, v, begun, beyond - 2.5 * v, beyond - v};
+  left_ = Left{centre, lags, radius, v, begun, beyond - 2.5 * v, beyond - v};
   if (is_from_centre) {
     left_->to_m += 2 * kPi * radius;
+  }
+  if (centre.above_ground) {  // anywhere on it
+    constexpr int kSides = 48;
+    for (int side = 0; side < kSides; ++side) {
+      const double angle = 2 * kPi * side / kSides;
+      const auto [lowest, highest] =
+          heights_at(centre.at + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      low = std::min(low, lowest);
+      high = std::max(high, highest);
+    }
   }
 }
 
@@ -371,7 +394,8 @@ void Hover::land(std::size_t command, const char* what) {
   part.ground = FlownPart::Ground::touched_from_above;
   const double foot = std::min(low, flight_.ground(at));
   for (const Eigen::Vector2d& place : leave_circle()) {
-    flight_.add_column(place, std::min(foot, flight_.ground(place)), high, std::min(reach(), 2.0));
+    flight_.add_column(place, std::min(foot, flight_.ground(place)), heights_at(place)[1],
+                       std::min(reach(), 2.0));
   }
   left_.reset();
   const double height = high - foot;

@@ -48,6 +48,12 @@ bool Walker::fly_hover(std::size_t n) {
     to.above_ground.reset();
   } else if (task == Task::loiter_turns) {
     const double radius = std::min(std::abs(command.params[2]), 2000.0);
+    if (is_copter &&
+        std::min(hover_->speed_mps[1], std::sqrt(1.25 * radius)) > parameter("WP_SPD") + 1e-6) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "a circle at more than its own speed (WP_SPD), which a copter that cannot "
+                     "fly so fast leaves outward, is not judged");
+    }
     hover_->circle(n, to, radius, command.params[0], command.params[2] > 0);
     return false;
   }
@@ -245,10 +251,11 @@ bool Walker::circle_wing(std::size_t n, const Destination& to) {
                    "some versions take a circle after a circle for reached, and leave it at once");
   }
   wing_->go(n, "", leg);
-  const double turns = task == Task::loiter_turns ? command.params[0] : 0;
-  const double seconds = task == Task::loiter_time ? command.params[0] : 0;
-  wing_->circle(n, "its circle", to, radius, clockwise, turns, seconds, leg.next,
-                command.params[3] == 1);
+  Wing::Stay stay;
+  stay.turns = task == Task::loiter_turns ? command.params[0] : 0;
+  stay.seconds = task == Task::loiter_time ? command.params[0] : 0;
+  stay.until_high = task == Task::loiter_to_altitude;
+  wing_->circle(n, "its circle", to, radius, clockwise, stay, leg.next, command.params[3] == 1);
   if (task == Task::loiter_forever) {
     flight_.take({0, kInfinity});
     return true;

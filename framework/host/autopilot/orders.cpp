@@ -127,13 +127,19 @@ void Walker::change_speed(std::size_t n) {
   if (is_px4()) {
     speeds[0] = speeds[1] = value > 0 ? std::clamp(value, min_airspeed(), max_airspeed()) : cruise;
     counts = true;
-  } else if (p[0] == 1) {  // a minimum ground speed
-    speeds[0] = cruise;
-    speeds[1] = std::max(cruise, std::min(value, max_airspeed()));
+  } else if (p[0] == 1) {  // a minimum ground speed, whatever airspeeds are sought later
+    min_ground_mps_ = std::max(is_pending_ ? min_ground_mps_ : 0, std::min(value, max_airspeed()));
+    counts = true;
+    std::copy(std::begin(airspeed_), std::end(airspeed_), std::begin(speeds));
+    if (airspeed_[1] == 0) {
+      speeds[0] = speeds[1] = cruise;
+    }
   } else {
     counts = p[0] == 0 && (value == -2 || (value >= min_airspeed() && value <= max_airspeed()));
     speeds[0] = speeds[1] = value == -2 ? cruise : value;
+    take_speed(counts, speeds, airspeed_, cruise);
   }
+  speeds[1] = std::max(speeds[1], min_ground_mps_);
   take_speed(counts, speeds, wing_speed_, cruise);
   if (counts) {
     const bool is_first = all_wing_speeds_[1] == 0;

@@ -23,7 +23,7 @@ void Walker::finish() {
     there.at = wing_->mean_place();
     there.low = wing_->low();
     there.high = wing_->high();
-    wing_->circle(last, "the circle at the end", there, parameter("NAV_LOITER_RAD"), true, 0, 0, {},
+    wing_->circle(last, "the circle at the end", there, parameter("NAV_LOITER_RAD"), true, {}, {},
                   false);
     flight_.take({0, kInfinity});
   } else if (is_winged_) {
@@ -239,14 +239,14 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
     there.at = wing_->mean_place();
     there.low = leg.to.low;
     there.high = leg.to.high;
-    wing_->circle(n, "the climb of its return", there, own, true, 0, 0, leg.to, false);
+    wing_->circle(n, "the climb of its return", there, own, true, {}, leg.to, false);
   }
   wing_->leave_track();
   wing_->go(n, "the way home", leg);
   if (is_px4() && autopilot_.airframe == Airframe::vtol) {
     Destination low_circle = leg.to;
     low_circle.low = low_circle.high = std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT");
-    wing_->circle(n, "the circle at home", low_circle, radius, true, 1, 0, leg.to, false);
+    wing_->circle(n, "the circle at home", low_circle, radius, true, {1, 0, true}, leg.to, false);
     hover_.emplace(flight_, refuge.at, low_circle.low);
     hover_->land(n, "the landing at home");
     return;
@@ -255,7 +255,7 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   if (is_px4()) {
     circle.low = circle.high = std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT");
   }
-  wing_->circle(n, "the circle at home", circle, radius, own >= 0, 0, 0, {}, false);
+  wing_->circle(n, "the circle at home", circle, radius, own >= 0, {}, {}, false);
   flight_.take({0, kInfinity});
   flight_.remark(Weight::note, "end", n, "it circles at home for ever: it does not land");
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace altiplan::host {
 
@@ -66,22 +67,25 @@ int Sequence::make_all_jumps(std::size_t n) {
 
 std::optional<std::size_t> Sequence::next_position(std::size_t n) const {
   std::size_t i = n + 1;
+  std::optional<std::size_t> behind_jump;
   for (std::size_t steps = 0; i < commands_.size() && steps < 2 * commands_.size(); ++steps) {
-    if (is_done(i)) {
-      if (formats::flies_to_position(task_of(i).task)) {
-        return i;
-      }
-      if (task_of(i).task == Task::return_home || task_of(i).task == Task::change_altitude) {
-        return std::nullopt;
-      }
-      if (is_jump(i) && jumps_left(i) != 0) {
-        if (const auto target = target_of(i)) {
-          i = *target;
-          continue;
-        }
-      }
+    const Task task = task_of(i).task;
+    if (is_done(i) && formats::flies_to_position(task)) {
+      return i;
     }
-    ++i;
+    if (is_done(i) && (task == Task::return_home || task == Task::change_altitude)) {
+      return std::nullopt;
+    }
+    const bool jumps = is_done(i) && is_jump(i);
+    if (const auto target = jumps && jumps_left(i) != 0 ? target_of(i) : std::nullopt) {
+      behind_jump = behind_jump.value_or(i + 1);
+      i = *target;
+    } else if (behind_jump && !jumps && !autopilot_.is_px4()) {
+      // AP_Mission::get_next_nav_cmd looks at one command that a jump leads to alone.
+      i = *std::exchange(behind_jump, std::nullopt);
+    } else {
+      ++i;
+    }
   }
   return std::nullopt;
 }

@@ -40,7 +40,8 @@ class Sequence {
   std::optional<std::size_t> after_jump(std::size_t n);
   /// Counts all that are left of a jump as made, and returns their number; 0 for one without end.
   int make_all_jumps(std::size_t n);
-  /// The next position that is flown to, if there is one.
+  /// The next position as the autopilot looks ahead, if there is one: ArduPilot takes an order that
+  /// a jump leads to for the end of the round.
   std::optional<std::size_t> next_position(std::size_t n) const;
 
  private:

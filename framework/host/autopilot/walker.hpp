@@ -176,6 +176,8 @@ class Walker {
   bool is_pending_ = false;  ///< a condition delays what follows
   double hover_speed_[2] = {0, 0};
   double wing_speed_[2] = {0, 0};
+  double airspeed_[2] = {0, 0};  ///< of ArduPilot's, which a minimum ground speed raises
+  double min_ground_mps_ = 0;
   double all_wing_speeds_[2] = {0, 0};  ///< from the slowest to the fastest of the mission
   /// A way between two commands: how often it was flown, how long it took at last, and where it
   /// ended.

@@ -14,6 +14,7 @@ constexpr double kGravity = 9.80665;
 constexpr double kTimeStep = 0.4;        // seconds
 constexpr double kLevel = 0.05;          // metres
 constexpr double kOnTrack = 1;           // metres: the reach of the track itself
+constexpr double kAnewAbove = 4;         // metres: 5, but for what it swings
 constexpr double kBesideTrack = 3;       // metres that are kept within
 constexpr double kReach = 8;             // metres: more than half of a step of time
 constexpr int kFractions = 5;            // of the distance at which a turn begins
@@ -37,6 +38,7 @@ constexpr double kQuick = 1.15;      // rates of climb and sink, of those that a
 constexpr double kSlow = 0.85;
 constexpr double kSlowClimb = 0.75;    // of an aeroplane of ArduPilot's
 constexpr double kClimbInTurn = 0.45;  // the same while it turns
+constexpr double kStarts = 2;          // seconds until it climbs
 constexpr double kTurning = 0.3;       // of the greatest turn, from which on it counts as one
 constexpr double kColdest = 0.97;
 constexpr double kWarmest = 1.08;
@@ -156,66 +158,85 @@ double Wing::turn_distance(double v, const Leg& leg) const {
          std::min(angle, kPi / 2) / (kPi / 2);
 }
 
-std::array<double, 2> Wing::sought_heights(const Leg& leg, const Eigen::Vector2d& at,
-                                           double share) const {
+std::array<double, 2> Wing::sought_heights(const Leg& leg, const Destination& from,
+                                           const Eigen::Vector2d& at, double share) const {
+  const bool is_px4 = flight_.autopilot().is_px4();
+  double low = kInfinity;
+  double high = -kInfinity;
   if (leg.to.above_ground) {
-    const auto begun = flight_.known_grounds(from_.at);
-    std::array<double, 2> heights = flight_.known_grounds(at);
-    for (int ground : {0, 1}) {
-      const double from = from_.above_ground.value_or(from_.low - begun[ground]);
-      heights[ground] += from + share * (*leg.to.above_ground - from);
+    const auto begun = flight_.known_grounds(from.at);
+    const auto grounds = flight_.known_grounds(at);
+    for (const int ground : {0, 1}) {
+      for (const double start : {from.low, from.high}) {
+        const double above = from.above_ground.value_or(start - begun[ground]);
+        const double sought = grounds[ground] + above + share * (*leg.to.above_ground - above);
+        low = std::min(low, sought);
+        high = std::max(high, sought);
+      }
     }
-    return {std::min(heights[0], heights[1]), std::max(heights[0], heights[1])};
+    return {low, high};
   }
-  const double height = sought_height(leg, share);
-  // Of a return or a new home, whose height is known in bounds.
-  const double spread = std::max(from_.high - from_.low, leg.to.high - leg.to.low);
-  // It may be above the ramp by now, or climb steeply up to CLIMB_SLOPE_HGT.
+  for (const double to : {leg.to.low, leg.to.high}) {
+    for (const double start : {from.low, from.high, std::clamp(to, from.low, from.high)}) {
+      const double sought = sought_height(leg, from, start, to, share);
+      low = std::min(low, sought);
+      high = std::max(high, sought);
+    }
+  }
+  // It may be above the ramp by now, or climb steeply up to CLIMB_SLOPE_HGT. A ramp from a height
+  // above the ground is cut at the number of that height, as if it were one above the sea.
   constexpr double kSteepBelow = 25;
-  const bool may_be_steep = !has_track_ || from_.low < flight_.home_ground + kSteepBelow;
-  if (may_be_steep && !flight_.autopilot().is_px4()) {
-    return {std::min(height, leg.to.low), std::max(height, leg.to.low) + spread};
+  const bool may_be_steep = !has_track_ || from.low < flight_.home_ground + kSteepBelow;
+  if (may_be_steep && !is_px4) {
+    return {std::min(low, leg.to.low), std::max(high, leg.to.high)};
   }
-  return {height, height + spread};
+  if (from.above_ground && !is_px4) {
+    return {std::min(low, leg.to.low), high};
+  }
+  return {low, high};
 }
 
-double Wing::sought_height(const Leg& leg, double share) const {
-  const double rise = leg.to.low - from_.low;
+double Wing::sought_height(const Leg& leg, const Destination& from, double start, double to,
+                           double share) const {
   if (flight_.autopilot().is_px4()) {
-    const double length = (leg.to.at - from_.at).norm();
+    const double length = (leg.to.at - from.at).norm();
     const double level = std::max(kPx4LevelBefore, l1_s_ * speed_mps[1]);
     if (leg.at_once || !has_track_ || length <= level) {
-      return leg.to.low;
+      return to;
     }
-    return from_.low + rise * std::min(1.0, share * length / (length - level));
+    return start + (to - start) * std::min(1.0, share * length / (length - level));
   }
-  return leg.at_once || std::abs(rise) < slope_min_m_ ? leg.to.low : from_.low + share * rise;
+  const bool is_at_once = (leg.at_once && to >= start) || std::abs(to - start) < slope_min_m_;
+  return is_at_once ? to : start + share * (to - start);
 }
 
-double Wing::highest_ahead(const Leg& leg, const Eigen::Vector2d& at, const Eigen::Vector2d& track,
-                           double left, double v) const {
+double Wing::highest_ahead(const Leg& leg, const Destination& from, const Eigen::Vector2d& at,
+                           const Eigen::Vector2d& track, double left, double v) const {
   constexpr double kLook = 100;  // metres
   const double slope = climb_mps_ / 2 / v;
   const double far = std::min(left, flight_.parameter("TERRAIN_LOOKAHD"));
   double highest = -kInfinity;
   for (double ahead = kLook; ahead <= far; ahead += kLook) {
-    highest = std::max(highest, flight_.ground(at + ahead * track) - ahead * slope);
+    const auto grounds = flight_.known_grounds(at + ahead * track);
+    highest = std::max(highest, std::max(grounds[0], grounds[1]) - ahead * slope);
   }
-  const double before = from_.above_ground.value_or(*leg.to.above_ground);
+  const auto begun = flight_.known_grounds(from.at);
+  const double before = from.above_ground.value_or(from.high - std::min(begun[0], begun[1]));
   return highest + std::max(before, *leg.to.above_ground);
 }
 
+double Wing::slow_climb_of(bool turns) const {
+  return flight_.autopilot().is_px4() ? kSlow : turns ? kClimbInTurn : kSlowClimb;
+}
+
 void Wing::seek_heights(Member& member, double sought, double highest, double seconds,
-                        bool turns) const {
+                        double slow_climb) const {
   // The low one sinks quickly and climbs slowly, the high one the other way round.
   const auto seek = [&](double z, double wanted, double sinks, double climbs) {
     const double quick = wanted < z ? sinks : std::max(climbs, kSlow);
     return z + seconds * std::clamp((wanted - z) / (lag_s_ / (quick * quick)), -sink_mps_ * sinks,
                                     climb_mps_ * climbs);
   };
-  const double slow_climb = flight_.autopilot().is_px4() ? kSlow
-                            : turns                      ? kClimbInTurn
-                                                         : kSlowClimb;
   member.low = seek(member.low, sought, kQuick, slow_climb);
   member.high = seek(member.high, highest, kSlow, kQuick);
 }
@@ -223,18 +244,31 @@ void Wing::seek_heights(Member& member, double sought, double highest, double se
 double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
   const double v = true_speed(member.speed, leg.to.low);
   const double distance = member.fraction * turn_distance(v, leg);
-  const Eigen::Vector2d begin = has_track_ ? from_.at : member.at;
+  const Destination from =
+      has_track_ ? from_ : Destination{member.at, member.low, member.high, std::nullopt};
+  const Eigen::Vector2d begin = from.at;
   const Eigen::Vector2d along = leg.to.at - begin;
   const double length = std::max(along.norm(), 1e-6);
   const Eigen::Vector2d track = along / length;
   const double finish = length + leg.pass_by_m;
   const double l1 = l1_s_ * v;
+  // ArduPilot scales the radius of its circle, too.
+  const double ratio = air_ratio(leg.to.low) * (member.speed == 0 ? kColdest : kWarmest);
+  const double circle_m = leg.circle_m * ratio * ratio;
   // The slow roll into tight turns, the fast into wide ones.
   const double weak = member.speed == 0 || flight_.autopilot().is_px4() ? 1 : kWeakTurn;
   const double max_rate = max_turn_rate(v);
   const double roll = max_rate * kTimeStep / (member.speed == 0 ? 0.4 : 1.2);
   double rate = 0;
   const bool is_rough = leg.to.above_ground.has_value();
+  // ArduPilot begins its climb anew where it is above it (ALT_SLOPE_MAXHGT).
+  struct Anew {
+    double share;
+    double high;
+  };
+  std::optional<Anew> anew;
+  const bool climbs =
+      !flight_.autopilot().is_px4() && !is_rough && leg.to.low - from.low >= slope_min_m_;
   const int max_steps = int((4 * (length + (member.at - begin).norm()) / v + 200) / kTimeStep);
   Vec3 before(member.at.x(), member.at.y(), member.low);
   double before_high = member.high;
@@ -254,7 +288,7 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     }
     // Steer to the place on the track that lies the distance of guidance ahead.
     const bool is_behind = off.norm() > l1 && done < -0.7071 * off.norm();
-    const bool is_near = (leg.to.at - member.at).norm() < 3 * leg.circle_m;
+    const bool is_near = (leg.to.at - member.at).norm() < 3 * circle_m;
     // ArduPilot points at the item itself, or at the beginning of a track that lies ahead.
     const bool is_direct = !flight_.autopilot().is_px4() && (!has_track_ || is_behind || is_near);
     const double beside = is_direct ? 0 : cross(track, off);
@@ -264,8 +298,11 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     const double to_track = std::asin(std::clamp(beside / l1, -0.7071, 0.7071));
     const Eigen::Vector2d velocity = unit(member.heading);
     const double from_track = std::atan2(cross(along_track, velocity), along_track.dot(velocity));
-    double eta = std::remainder(-(from_track + to_track), 2 * kPi);
-    if (std::abs(eta) > kEitherWay) {  // some fly on the left, some on the right
+    // ArduPilot's angle may be more than half a turn, which it takes on the side of its heading.
+    double eta = -(from_track + to_track);
+    eta = flight_.autopilot().is_px4() ? std::remainder(eta, 2 * kPi) : eta;
+    const double turns = flight_.autopilot().is_px4() ? eta : from_track;
+    if (std::abs(turns) > kEitherWay) {  // some fly on the left, some on the right
       eta = int(std::lround(member.fraction * (kFractions - 1))) % 2 == 0 ? 1 : -1;
       eta *= kEitherWay;
     }
@@ -278,27 +315,42 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     member.heading += turned;
     seconds += dt;
     undrawn += v * dt;
-    const double share = std::clamp((member.at - begin).dot(track) / length, 0.0, 1.0);
-    const auto [sought, sought_high] = sought_heights(leg, member.at, share);
+    const double way = (member.at - begin).dot(track);
+    const bool is_before_item = way <= length;
+    const double share = std::clamp(way / length, 0.0, 1.0);
+    const auto [sought, ramp_high] = sought_heights(leg, from, member.at, share);
+    double sought_high = ramp_high;
+    if (anew && leg.to.low - anew->high < slope_min_m_) {
+      sought_high = std::max(ramp_high, leg.to.low);
+    } else if (anew) {
+      const double done_anew = (share - anew->share) / std::max(1 - anew->share, 1e-6);
+      sought_high = std::max(ramp_high, anew->high + done_anew * (leg.to.low - anew->high));
+    }
+    if (climbs && member.high > sought_high + kAnewAbove) {
+      anew = {share, member.high};
+    }
     const double old_low = member.low;
     const double old_high = member.high;
     const double highest =
-        is_rough ? std::max(sought_high, highest_ahead(leg, member.at, track, finish - done, v))
-                 : sought_high;
-    seek_heights(member, sought, highest, dt, std::abs(rate) > kTurning * max_rate);
+        is_rough
+            ? std::max(sought_high, highest_ahead(leg, from, member.at, track, finish - done, v))
+            : sought_high;
+    const double slow_climb =
+        seconds < kStarts ? 0 : slow_climb_of(std::abs(rate) > kTurning * max_rate);
+    seek_heights(member, sought, highest, dt, slow_climb);
     const bool is_level =
         std::abs(member.low - old_low) < 1e-3 && std::abs(member.high - old_high) < 1e-3;
     const bool bends = std::abs(member.heading - drawn_heading) > 0.05;
     const double line =
-        leg.at_once || is_rough ? sought : from_.low + share * (leg.to.low - from_.low);
+        leg.at_once || is_rough ? sought : from.low + share * (leg.to.low - from.low);
     const Vec3 here(member.at.x(), member.at.y(), std::min({member.low, sought, line}));
     const double here_high = std::max({member.high, highest, line});
     const bool is_settled =
         has_track_ && std::abs(beside) < kOnTrack && std::abs(from_track) < 0.05;
     passed.push_back({here, here_high, is_settled});
     if (bends || !is_level || (is_rough && undrawn > 15) || undrawn > 200) {
-      const double nominal = from_.low + share * (leg.to.low - from_.low);
-      const bool is_on_line = has_track_ && !is_rough &&
+      const double nominal = from.low + share * (leg.to.low - from.low);
+      const bool is_on_line = has_track_ && !is_rough && is_before_item &&
                               std::abs(cross(track, member.at - begin)) < kOnTrack &&
                               std::max(here_high - nominal, nominal - here.z()) < kLevel;
       if (!(was_on_line && is_on_line)) {  // else the track itself covers it
@@ -311,7 +363,8 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
       undrawn = 0;
     }
   }
-  const bool is_on_line = was_on_line && member.high - member.low < kLevel &&
+  const bool is_on_line = was_on_line && (member.at - begin).dot(track) <= length + kOnTrack &&
+                          member.high - member.low < kLevel &&
                           std::abs(member.low - leg.to.low) < kLevel;
   if (!is_on_line) {
     flight_.add_strip(before, before_high, {member.at.x(), member.at.y(), member.low}, member.high,
@@ -326,8 +379,8 @@ void Wing::circle_until_high(std::size_t command, const Leg& leg) {
     return;
   }
   circle(command, "its circle until the height is reached", leg.to,
-         flight_.parameter("NAV_LOITER_RAD"), true, 0, off / std::min(climb_mps_, sink_mps_),
-         leg.next, false);
+         flight_.parameter("NAV_LOITER_RAD"), true,
+         {0, off / std::min(climb_mps_, sink_mps_), true}, leg.next, false);
 }
 
 void Wing::cut_corner(const Leg& leg) {
@@ -438,7 +491,7 @@ std::array<double, 2> Wing::lags_on_circle(const Destination& centre, double rad
         member.low = lowest;
         member.high = highest;
       }
-      seek_heights(member, lowest, highest, 2 * kPi * radius / kSides / v, true);
+      seek_heights(member, lowest, highest, 2 * kPi * radius / kSides / v, slow_climb_of(true));
       lags[0] = std::max(lags[0], lowest - member.low + kAboveGround);
       lags[1] = std::max(lags[1], member.high - highest + kAboveGround);
     }
@@ -460,31 +513,46 @@ double Wing::widest_radius(double radius, double z) const {
   return (is_tight ? 2 : kSwings) * steady;
 }
 
+std::array<double, 2> Wing::heights_at(const Destination& to, const Eigen::Vector2d& at) const {
+  if (!to.above_ground) {
+    return {to.low, to.high};
+  }
+  const auto grounds = flight_.known_grounds(at);
+  const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+  return {lowest + *to.above_ground, highest + *to.above_ground};
+}
+
 void Wing::circle(std::size_t command, const char* what, const Destination& centre, double radius,
-                  bool clockwise, double turns, double seconds,
-                  const std::optional<Destination>& next, bool leaves_on_tangent) {
+                  bool clockwise, const Stay& stay, const std::optional<Destination>& next,
+                  bool leaves_on_tangent) {
   flight_.begin(command, what);
-  const double z =
-      centre.above_ground ? flight_.ground(centre.at) + *centre.above_ground : centre.low;
-  const double bottom = std::min(low(), z);
-  const double top = std::max({high(), z, centre.high});
+  const double z = heights_at(centre, centre.at)[0];
+  double below = 0;  // the height that is sought
+  double above = 0;
+  for (const Member& member : members_) {
+    const auto [lowest, highest] = heights_at(centre, member.at);
+    below = std::max(below, lowest - member.low);
+    above = std::max(above, member.high - highest);
+  }
   const double v = true_speed(1, z);
   const double steady = steady_radius(radius, z);
   const double widest = widest_radius(radius, z);
   // A small circle is joined from within; a large one along a tangent, or beyond it.
   const double inner = radius < 150 ? 0 : 0.75 * radius;
+  const std::array<double, 2> lags =
+      centre.above_ground ? lags_on_circle(centre, steady, v) : std::array<double, 2>{0, 0};
   if (centre.above_ground) {
-    const auto [below, above] = lags_on_circle(centre, steady, v);
-    flight_.add_disc(centre, inner, widest, bottom - z - below, top - z + above);
+    flight_.add_disc(centre, inner, widest, -below - lags[0], above + lags[1]);
   } else {
-    flight_.add_disc(centre, inner, widest, bottom, top);
+    flight_.add_disc(centre, inner, widest, centre.low - below, centre.high + above);
   }
   const double round = 2 * kPi * radius;
-  const double climb =
-      std::max(std::abs(bottom - z), std::abs(top - z)) / std::min(climb_mps_, sink_mps_);
+  const double climb = std::max(below, above) / std::min(climb_mps_, sink_mps_);
+  const double stays_s =
+      stay.seconds + stay.turns * round / (speed_mps[1] + flight_.wind_mps) * 0.9;
   flight_.take(
-      {seconds + turns * round / (speed_mps[1] + flight_.wind_mps) * 0.9,
-       seconds + climb + (turns + 1) * round / std::min(speed_mps[0], true_speed(0, z)) * 1.1});
+      {stays_s, stay.seconds + climb +
+                    (stay.turns + 1) * round / std::min(speed_mps[0], true_speed(0, z)) * 1.1});
   const double sense = clockwise ? -1 : 1;
   if (!next) {                   // it may leave it anywhere
     constexpr int kPlaces = 13;  // the last one is the first
@@ -493,6 +561,11 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
       members_.push_back({centre.at, 2 * kPi * n / (kPlaces - 1), z, z, n / kPlaces, 0.5});
     }
   }
+  // ArduPilot stays for its turns or its time, whether it has reached the height or not.
+  const bool is_level = stay.until_high || flight_.autopilot().is_px4();
+  const double left_below =
+      is_level ? 0 : std::max(below - kClimbInTurn * climb_mps_ * stays_s, 0.0);
+  const double left_above = is_level ? 0 : std::max(above - kSlow * sink_mps_ * stays_s, 0.0);
   for (Member& member : members_) {
     Eigen::Vector2d p = member.at;
     for (int n = 0; n < 4; ++n) {
@@ -503,11 +576,12 @@ void Wing::circle(std::size_t command, const char* what, const Destination& cent
       member.heading = heading;
     }
     member.at = p;
-    member.low = member.high = z;
+    const auto [lowest, highest] = heights_at(centre, p);
+    member.low = lowest - left_below - lags[0];
+    member.high = highest + left_above + lags[1];
   }
   from_ = centre;
   before_.reset();
-  from_.low = from_.high = z;
   has_track_ = !leaves_on_tangent || flight_.autopilot().is_px4();
   if (leaves_on_tangent) {
     from_.at = mean_place();
