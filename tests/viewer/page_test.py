@@ -17,11 +17,12 @@ from case import NIGHTLY, TEMPLATE, Case, own_scene
 from colony import Colony
 from cut import Cut, CutIn3
 from follow import Follow, FollowIn3
+from on_ground import OnGround
 from signs import Signs
 
 # By day with WebGL, of all that is drawn with it.
 DRAWN = {"test_lines_are_the_data", "test_ground_corners_and_holes", "test_far_from_the_origin",
-         "test_the_route_is_seen", "test_the_body_stands_along_the_route_to_scale",
+         "test_the_route_is_seen", "test_contours_are_where_the_ground_is_so_high", "test_a_basemap_is_where_it_says", "test_the_body_stands_along_the_route_to_scale",
          "test_the_cut_shows_what_was_hidden", "test_the_eye_is_behind_and_above_the_ground"}
 # At night without WebGL: another test of the same part stays.
 FURTHER = {"test_a_film", "test_a_level_route_looks_level", "test_attribution_of_a_picture",
@@ -122,7 +123,7 @@ class OtherScenes:
             self.expected = [sentence]
 
 
-class Page(Both, OtherScenes, Bodies, Colony, Cut, CutIn3, Follow, FollowIn3, Signs, Case):
+class Page(Both, OtherScenes, Bodies, Colony, Cut, CutIn3, Follow, FollowIn3, OnGround, Signs, Case):
     def test_camera_of_the_still(self):
         self.run_js("altiplan.still()")
         eye = self.run_js("return altiplan.camera()")
@@ -216,7 +217,7 @@ class Page(Both, OtherScenes, Bodies, Colony, Cut, CutIn3, Follow, FollowIn3, Si
         self.assertLessEqual(min(times), 6000)
 
 
-class Flat(Both, OtherScenes, Bodies, Colony, Cut, Follow, Signs, Case):
+class Flat(Both, OtherScenes, Bodies, Colony, Cut, Follow, OnGround, Signs, Case):
     """Without WebGL: the same from above."""
     webgl = False
     view = "2d"

@@ -76,6 +76,7 @@ class Signs:
             self.assertIn(name, texts)
 
     def test_labels_go_with_the_grid_and_come_back(self):
+        self.click("#show_contours")  # which have heights of their own
         before = self.run_js(RECTANGLES)["labels"]
         self.press("g")
         self.assertEqual(self.run_js(RECTANGLES)["labels"], [])

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {decode, read_scene} from './scene.js';
 import {set_series} from './colors.js';
+import {contour_step} from './contours.js';
 import {build_editor} from './edit/editor.js';
 import {by_id} from './dom.js';
 import {show_scene, tried_lines} from './live.js';
@@ -39,7 +40,8 @@ function first_state(scene, lines) {
   const exaggeration = Math.min(5, Math.max(1, Number(query.get('z')) || 1));
   const cut = query.has('cut') ? asked_cut(query.get('cut')) : Infinity;
   return {shown, hidden: hidden_at_first(scene), selected, source: 'route', time: 0, playing: false, speed: 1,
-    follow: false, filmed: false, zoom: null, cursor: null, exaggeration, cut, grid: true, bodies: true, version: 0,
+    follow: false, filmed: false, zoom: null, cursor: null, exaggeration, cut, grid: true, contours: true,
+    basemap: true, bodies: true, version: 0,
     everything: false, theme: 'light', tab: 'profiles',
     search: null, searched: 0, legend: query.has('still') || innerWidth > 820};
 }
@@ -71,12 +73,21 @@ function show(next, view, world, store) {
   return new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
 }
 
-function start() {
+/** The basemap with its image decoded; null without one. */
+async function decoded(basemap) {
+  if (!basemap) return null;
+  const image = Object.assign(new Image(), {src: basemap.image});
+  await image.decode();
+  return {...basemap, image};
+}
+
+async function start() {
   const scene = read_scene(by_id('scene').textContent);
   set_series(scene.results);
   const lines = lines_of(scene.results);
   const tried = new Set(scene.edit ? tried_lines(lines, scene.results) : []);
-  const world = {scene, frame: new Frame(scene.box), lines, tried};
+  const world = {scene, frame: new Frame(scene.box), lines, tried, contour_step: contour_step(scene.ground),
+    basemap: await decoded(scene.basemap)};
   const store = new Store(first_state(scene, lines));
   store.set({shown: new Set([...store.state.shown, ...tried])});
   follow_theme(store, query.get('theme'));
@@ -95,8 +106,4 @@ function start() {
   altiplan.ready = true;
 }
 
-try {
-  start();
-} catch (error) {
-  complain(error.message);
-}
+start().catch((error) => complain(error.message));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {contour_places} from '../contours.js';
 import {by_id, element} from '../dom.js';
 import {mark_text} from '../units.js';
 import {grid_lines, grid_unit} from '../world.js';
@@ -9,6 +10,10 @@ const kFromEdge = 6;
 const kFromNumbers = 4;
 // Between two numbers, more than between other labels: they are no one number.
 const kBetween = 6;
+// Between two heights of contours.
+const kBetweenHeights = 80;
+// The share of the box's diagonal within which the ground at a pixel is that of a contour there.
+const kNear = 0.01;
 // A number farther from its line than this would seem to belong to another.
 const kReach = 30;
 // Where along an edge its name may stand.
@@ -21,6 +26,7 @@ const kPanels = ['legend', 'attribution', 'north', 'scale', 'readout', 'telemetr
  *  the axes' names, where there is room. None is on another one, on a panel, or cut. */
 export function build_labels(view, world, store, marks) {
   const axes = [0, 1].map((axis) => axis_of(axis, world));
+  const heights = heights_of(world);
   let readout = null;
   const place_all = () => {
     const stage = by_id('stage');
@@ -31,13 +37,14 @@ export function build_labels(view, world, store, marks) {
     const room = new Room(stage.clientWidth, stage.clientHeight,
       [...Object.values(panels), ...(readout ? [readout] : [])]);
     for (const mark of marks) mark.size = size_of(mark);
-    for (const axis of axes) {
-      for (const label of [...axis.numbers, axis.name]) label.size = size_of(label);
+    for (const label of [...axes.flatMap(({numbers, name}) => [...numbers, name]), ...heights]) {
+      label.size = size_of(label);
     }
     place_marks(marks, view, room, Object.values(panels));
     // From near by, numbers on far edges would lie on what is in front of these.
-    const {grid, follow} = store.state;
+    const {contours, grid, follow} = store.state;
     for (const axis of axes) place_axis(axis, view, room, grid && !follow);
+    place_heights(heights, view, room, contours && !follow);
   };
   view.on_frame(place_all);
   // All else that matters draws a frame.
@@ -87,9 +94,9 @@ function place_marks(marks, view, room, panels) {
   }
 }
 
-function tick(text) {
+function tick(text, name = 'tick') {
   const span = element('span', {}, text);
-  const made = element('div', {className: 'mark tick'}, span);
+  const made = element('div', {className: `mark ${name}`}, span);
   by_id('marks').append(made);
   return {span, made};
 }
@@ -102,6 +109,24 @@ function axis_of(axis, {frame, scene}) {
     nth: Math.round(value / step)}));
   const name = tick(`${['x east', 'y north'][axis]}, ${unit.name}`);
   return {axis, numbers, name, frame, base: frame.base(scene.ground)};
+}
+
+/** The heights of index contours, each with its place. */
+function heights_of({scene, contour_step: apart}) {
+  return apart ? contour_places(scene.ground, apart).map((place) =>
+    ({...tick(mark_text(place[2], apart), 'tick height'), place})) : [];
+}
+
+/** Where there is room, and no ground in front. */
+function place_heights(heights, view, room, wanted) {
+  for (const label of heights) {
+    const seen = wanted && view.project(label.place);
+    const free = seen && seen.visible && room.is_free(around([seen.x, seen.y], label.size), kBetweenHeights);
+    const ground = free && view.ground_at(seen.x, seen.y);
+    const hidden = !ground || Math.hypot(...ground.map((value, axis) => value - label.place[axis])) > kNear * view.world.frame.diagonal;
+    show(label, hidden ? null : [seen.x, seen.y]);
+    if (!hidden) room.take(around([seen.x, seen.y], label.size));
+  }
 }
 
 /** A place on the edge of the box nearer to the eye, as pixels, with the direction away from the

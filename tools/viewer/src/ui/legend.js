@@ -4,16 +4,16 @@ import {kRoleNames, role_color, route_color} from '../colors.js';
 import {by_id, element, swatch} from '../dom.js';
 import {thinning} from '../playback.js';
 import {ramp_gradient} from '../ramp.js';
-import {mark_text, metres, number} from '../units.js';
+import {length_text, mark_text, metres, number} from '../units.js';
 import {grid_lines, grid_unit, layers_of} from '../world.js';
 import {violations_of} from './violations.js';
 
 /** The legend of colours and lines, with units. */
 export function build_legend(world, store) {
-  const reflect = () => by_id('legend').replaceChildren(...heights(world.scene.ground),
+  const reflect = () => by_id('legend').replaceChildren(...heights(world, store.state),
     ...routes(world, store.state), ...roles(world.scene, store.state), ...violations(world, store.state),
     ...body(world.scene, store.state), grid(world, store.state), ...search(store.state));
-  store.on(['version', 'theme', 'shown', 'hidden', 'grid', 'bodies', 'exaggeration', 'cut', 'search'], reflect);
+  store.on(['version', 'theme', 'shown', 'hidden', 'grid', 'contours', 'basemap', 'bodies', 'exaggeration', 'cut', 'search'], reflect);
   reflect();
   const fold = () => {
     by_id('legend').hidden = !store.state.legend;
@@ -22,8 +22,8 @@ export function build_legend(world, store) {
   fold();
 }
 
-function heights(ground) {
-  if (!ground) return [];
+function heights({scene: {ground}, basemap}, state) {
+  if (!ground || basemap && state.basemap) return [];
   const bar = element('div', {className: 'ramp'});
   bar.style.background = ramp_gradient();
   return [element('div', {className: 'heights'}, element('span', {}, number(ground.min)), bar,
@@ -61,9 +61,10 @@ function search({search: shown}) {
   return shown ? [element('div', {className: 'note'}, `Search. ${thinning(shown.trace)}`)] : [];
 }
 
-function grid({frame, scene}, state) {
+function grid({frame, scene, contour_step: apart}, state) {
   const [{step}, unit] = [grid_lines(frame.box, 0), grid_unit(frame.box)];
   const parts = state.grid ? [`Grid ${mark_text(step, step, unit.metres)} ${unit.name}`] : [];
+  if (apart && state.contours) parts.push(`contours every ${length_text(apart)}`);
   if (!scene.ground && !document.body.classList.contains('flat')) {
     parts.push(`floor drawn at ${metres(frame.box[0][2])}`);
   }

@@ -78,7 +78,14 @@ function world_controls(view, world, store) {
   store.on(['grid'], () => { grid.input.checked = store.state.grid; });
   const legend = checkbox('Legend', store.state.legend, (on) => store.set({legend: on}));
   store.on(['legend'], () => { legend.input.checked = store.state.legend; });
+  const optional = (key, label) => {
+    const {input, row} = checkbox(label, store.state[key], (on) => store.set({[key]: on}));
+    input.id = `show_${key}`;
+    return row;
+  };
   rows.push(grid.row, legend.row);
+  if (world.contour_step) rows.push(optional('contours', 'Contours'));
+  if (world.basemap) rows.push(optional('basemap', `Basemap ${world.basemap.name}`));
   if (scene.body) rows.push(body_row(view, scene, store));
   if (layers_of(scene).some(({events}) => events.size > 0)) {
     rows.push(checkbox('Shapes of all events, at any time', false,

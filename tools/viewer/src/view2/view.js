@@ -6,7 +6,7 @@ import {by_id} from '../dom.js';
 import {outline} from '../shapes.js';
 import {circles, drift, event_times, flight_line, grid_lines, layer_key, place_at,
   present} from '../world.js';
-import {ground_image} from './ground_image.js';
+import {contour_image, ground_image} from './ground_image.js';
 import {count_below, path_of_many} from './paths.js';
 
 const kOpacity = {obstacle: 0.6, keep_out: 0.25, keep_in: 0.06, threat: 0.25,
@@ -28,7 +28,7 @@ export class View2 {
     new ResizeObserver(() => this.resize()).observe(stage);
     this.resize();
     this.look('fit');
-    store.on(['version', 'shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'bodies', 'theme',
+    store.on(['version', 'shown', 'hidden', 'selected', 'time', 'everything', 'cut', 'grid', 'contours', 'basemap', 'bodies', 'theme',
       'search', 'searched'], () => this.draw());
     store.on(['follow', 'time', 'selected'], (state, changed) => this.#follow(state, changed));
   }
@@ -215,7 +215,10 @@ export class View2 {
     context.fillStyle = style_of('--sky');
     context.fillRect(0, 0, canvas.width, canvas.height);
     this.#paint_ground();
-    if (this.store.state.grid) this.#paint_grid();
+    const {basemap, contours, grid} = this.store.state;
+    if (basemap && this.world.basemap) this.#paint_basemap(this.world.basemap);
+    if (contours && this.world.contour_step) this.#paint_contours(this.world.contour_step);
+    if (grid) this.#paint_grid();
     for (const thing of this.#present()) this.#paint_solid(thing);
     this.#paint_circles();
     this.#paint_search();
@@ -236,6 +239,18 @@ export class View2 {
       ground.y0 + (ground.ny - 0.5) * ground.dy]);
     this.context.drawImage(this.image, corner.x, corner.y,
       ground.nx * ground.dx * this.scale, ground.ny * ground.dy * this.scale);
+  }
+
+  #paint_basemap({box: [low, high], image}) {
+    const corner = this.project([low[0], high[1]]);
+    this.context.drawImage(image, corner.x, corner.y,
+      (high[0] - low[0]) * this.scale, (high[1] - low[1]) * this.scale);
+  }
+
+  #paint_contours(step) {
+    const {clientWidth, clientHeight} = this.stage;
+    this.context.drawImage(contour_image(this.world.scene.ground, step, [clientWidth, clientHeight],
+      this.ground_at(0, 0), 1 / this.scale), 0, 0);
   }
 
   #stroke(points, width, color, dash = []) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import {BufferAttribute, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial} from 'three';
+import {mapped} from './shaders.js';
 
 const kColor = {light: 0xf6f5f1, dark: 0x2b323a};
 
 /** A plane where a world has no terrain: the floor of the box. */
 export class Floor {
-  constructor(frame) {
+  constructor(frame, basemap) {
     this.frame = frame;
     const [[west, south, low], [east, north]] = frame.box.map((corner) => frame.local(corner));
     const geometry = new BufferGeometry();
@@ -15,6 +16,7 @@ export class Floor {
     // Pushed back, so that the grid and outlines on it are seen.
     this.object = new Mesh(geometry, new MeshBasicMaterial({side: DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4}));
+    mapped(this.object.material, basemap);
     this.object.renderOrder = -1;
   }
 

@@ -2,7 +2,7 @@
 import {BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LinearSRGBColorSpace, Mesh,
   MeshBasicMaterial, Sphere, Vector3} from 'three';
 import {shaded} from '../ground.js';
-import {pressed_down} from './shaders.js';
+import {as_ground, pressed_down} from './shaders.js';
 
 // Posts of the coarse terrain drawn in motion if a full frame takes too long.
 const kCoarsePosts = 40000;
@@ -99,8 +99,8 @@ function sphere_around({nx}, values, columns, rows) {
 
 /** Tiles of one mesh; light and height colours are in its vertices. */
 export class Terrain {
-  /** `cut` is a uniform with the local height of the cut. */
-  constructor(ground, frame, cut) {
+  /** `cut` is a uniform with the local height of the cut, `contours` and `basemap` are those of `as_ground`. */
+  constructor(ground, frame, cut, contours, basemap) {
     this.ground = ground;
     this.frame = frame;
     this.position = new BufferAttribute(positions(ground, frame), 3);
@@ -115,7 +115,7 @@ export class Terrain {
       shader.fragmentShader = shader.fragmentShader.replace('#include <colorspace_fragment>', '');
     };
     this.inside = {value: new Color()};
-    pressed_down(material, cut, this.inside);
+    as_ground(material, {cut, inside: this.inside, contours}, basemap);
     const tile = (columns, rows) => {
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', this.position);

@@ -11,6 +11,7 @@ import {Goals} from './goals.js';
 import {Grid} from './grid.js';
 import {Lines} from './lines.js';
 import {Search} from './search.js';
+import {basemap_on} from './shaders.js';
 import {Solids} from './solids.js';
 import {Terrain} from './terrain.js';
 import {Vehicle} from './vehicle.js';
@@ -45,8 +46,10 @@ export class View3 {
     this.camera.turned = () => this.chase.read(this.camera.back());
     this.chase = new Chase(world);
     this.vehicle = new Vehicle(world);
-    this.terrain = scene.ground ? new Terrain(scene.ground, frame, this.cut) : null;
-    this.floor = scene.ground ? null : new Floor(frame);
+    this.contours = {value: new Vector2(0, frame.centre[2])};
+    this.basemap = basemap_on(world);
+    this.terrain = scene.ground ? new Terrain(scene.ground, frame, this.cut, this.contours, this.basemap) : null;
+    this.floor = scene.ground ? null : new Floor(frame, this.basemap);
     this.solids = new Solids(scene, frame);
     this.lines = new Lines(lines, scene.ground, frame);
     this.grid = new Grid(frame, scene.ground, this.cut);
@@ -63,7 +66,7 @@ export class View3 {
     // Shaders compile while the panels are built.
     this.renderer.compile(this.picture, this.camera.eye);
     store.on(['version'], () => this.#rebuild());
-    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'bodies', 'theme',
+    store.on(['shown', 'hidden', 'selected', 'time', 'everything', 'grid', 'contours', 'basemap', 'bodies', 'theme',
       'exaggeration', 'cut', 'search', 'searched', 'follow'], (state, changed) => this.update(state, changed));
   }
 
@@ -111,6 +114,8 @@ export class View3 {
     // Slightly lower than the tops of cut solids: in the same plane the two would flicker.
     const {centre, diagonal} = this.world.frame;
     this.cut.value = Math.min(kNowhere, state.cut - centre[2] - kHair * diagonal);
+    this.contours.value.x = state.contours ? this.world.contour_step ?? 0 : 0;
+    if (this.basemap) this.basemap.basemap_shown.value = Number(state.basemap);
     this.lines.update(state);
     this.solids.update(state, event_times(this.world.scene, state.selected));
     this.grid.update(state);
