@@ -91,7 +91,7 @@ set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_CONTROL_EXTRA "${packages}/triggers;${packages
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_SECTION science)
 # PROJ is opened by the first file of buildings that names a coordinate system.
 set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_RECOMMENDS "altiplan-plugins-geo, libproj25, proj-data")
-set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_SUGGESTS "altiplan-dev, librsvg2-bin")
+set(CPACK_DEBIAN_ALTIPLAN_PACKAGE_SUGGESTS "altiplan-dev, gdal-bin, librsvg2-bin")
 set(CPACK_DEBIAN_ALTIPLAN_DESCRIPTION "planning of routes for unmanned aircraft
 Routes over real terrain are planned, smoothed, flown in simulation, judged
 exactly and compared in studies. Everything that varies is a plugin composed

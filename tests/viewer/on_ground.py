@@ -155,3 +155,16 @@ class OnGround:
                 self.assertLess(math.dist(found, (color or below)[:3]), 12, (x, y, has_ground))
                 if color:
                     self.assertGreater(math.dist(below, color[:3]), 40)
+
+    @own_scene
+    def test_items_of_a_mission_have_their_numbers(self):
+        scene = scenes.empty(BOX)
+        scene["numbered"] = [{"number": 3 + nth, "at": [1000 + 1000 * nth, 4000, 900]} for nth in range(8)]
+        self.open(scene)
+        shown = "return [...document.querySelectorAll('.mark.via')].map((mark) => [mark.textContent, mark.hidden])"
+        self.assertEqual(self.run_js(shown), [[str(3 + nth), False] for nth in range(8)])
+        place = self.run_js("return altiplan.project(arguments[0])", scene["numbered"][0]["at"])
+        self.assertLess(math.dist(self.mark("via"), (place["x"], place["y"])), 1)
+        scene["numbered"] = scene["numbered"] * 100
+        self.open(scene)
+        self.assertEqual(len(self.run_js(shown)), 200)

@@ -18,6 +18,7 @@
 #include "host/config/yaml.hpp"
 #include "host/edit/session.hpp"
 #include "host/mission/mission.hpp"
+#include "host/view/scene_parts.hpp"
 #include "mission_options.hpp"
 #include "serve/serve.hpp"
 
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 struct EditArguments {
   std::vector<std::string> files;
   bool has_browser = true;
+  std::optional<std::string> basemap;
   MissionOptions mission;
   host::Overrides overrides;
 };
@@ -142,13 +144,13 @@ void serve_until_closed(Session& session, bool has_browser) {
 
 /// The process that serves the page of pipelines.
 [[noreturn]] void serve_page(const Opened& opened, const Frame& frame, const fs::path& folder,
-                             int socket, bool has_browser) {
+                             int socket, bool has_browser, host::Basemap* basemap) {
   // It must not outlive the one that plans.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   int code = kDone;
   try {
     host::PlanLine line(socket);
-    host::EditSession session(opened.pipelines, opened.given, frame, folder, line);
+    host::EditSession session(opened.pipelines, opened.given, frame, folder, line, basemap);
     serve_until_closed(session, has_browser);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "altiplan: %s\n", error.what());
@@ -158,14 +160,22 @@ void serve_until_closed(Session& session, bool has_browser) {
 }
 
 int edit(const EditArguments& arguments) {
+  const auto basemap =
+      arguments.basemap ? std::make_unique<host::Basemap>(*arguments.basemap) : nullptr;
   if (!arguments.mission.plan.plan.empty()) {
-    MissionEditor editor(arguments.mission.plan, arguments.overrides);
+    MissionEditor editor(arguments.mission.plan, arguments.overrides, basemap.get());
     serve_until_closed(editor, arguments.has_browser);
     return kDone;
   }
   const Opened opened = open_all(arguments);
   // Plugins are loaded and their files read once, for all that is forked from here.
   const host::Mission mission = host::build_mission(opened.pipelines.front().config, 1);
+  if (basemap) {
+    // Refuses images of elsewhere.
+    const Box box = host::scene_box(mission, {});
+    host::Json seen{{"box", {host::rounded(box.min), host::rounded(box.max)}}};
+    basemap->add_to(seen, mission.truth.frame());
+  }
   const host::TemporaryFolder folder;
   std::array<int, 2> sockets{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0) {
@@ -177,7 +187,8 @@ int edit(const EditArguments& arguments) {
   }
   if (server == 0) {
     ::close(sockets[0]);
-    serve_page(opened, mission.truth.frame(), folder.path(), sockets[1], arguments.has_browser);
+    serve_page(opened, mission.truth.frame(), folder.path(), sockets[1], arguments.has_browser,
+               basemap.get());
   }
   ::close(sockets[1]);
   const host::Unfinished ended([server] { ::kill(server, SIGKILL); });
@@ -213,6 +224,7 @@ void add_edit(App& app, Action& action) {
       ->required();
   command.add_flag("!--no-browser", arguments.has_browser,
                    "print the page's address only, open no browser");
+  add_basemap(command, arguments.basemap);
   add_overrides(command, arguments.overrides);
   add_mission_options(command, arguments.mission);
   set_example(command, "altiplan edit configs/pipelines/ridge_crossing.yaml");

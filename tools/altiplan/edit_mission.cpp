@@ -55,32 +55,39 @@ Json movable(const std::vector<MovableItem>& items) {
 }
 }  // namespace
 
-MissionEditor::MissionEditor(PlanCheck check, host::Overrides overrides)
+MissionEditor::MissionEditor(PlanCheck check, host::Overrides overrides, host::Basemap* basemap)
     : check_(std::move(check)),
       overrides_(std::move(overrides)),
+      basemap_(basemap),
       saved_(formats::read_file(check_.plan)),
       opened_(judged_plan(check_, overrides_, saved_)),
       judged_(opened_) {
   static_cast<void>(host::changed_plan(saved_, judged_.mission.format, {}));  // refuses others
   states_.push_back({saved_, 0, items_of(opened_, opened_.world.truth.frame())});
+  if (basemap_ != nullptr) {
+    static_cast<void>(scene());  // refuses images of elsewhere
+  }
 }
 
 host::PageAnswer MissionEditor::answer(const host::PageRequest& request) {
   const std::lock_guard lock(mutex_);
   return host::answered(
-      request, {{"GET /", [&](const Json&) { return page(); }},
+      request, {{"GET /", [&](const Json&) { return host::edited_page(scene()); }},
                 {"GET /plugins", [](const Json&) { return host::json_answer(Json::array()); }},
                 {"POST /edit", [&](const Json& wish) { return host::json_answer(change(wish)); }},
                 {"POST /save", [&](const Json& wish) { return host::json_answer(saved(wish)); }}});
 }
 
-host::PageAnswer MissionEditor::page() {
+Json MissionEditor::scene() {
   Json scene = host::line_scene(judged_.line(opened_.world.truth.frame()), opened_.world).json;
   scene["title"] = fs::path(check_.plan).filename();  // the verdict changes
   scene["movable"] = movable(now().items);
   scene["edit"] = state();
   scene["edit_formats"] = Json::array();
-  return host::edited_page(scene);
+  if (basemap_ != nullptr) {
+    basemap_->add_to(scene, opened_.world.truth.frame());
+  }
+  return scene;
 }
 
 JudgedPlan MissionEditor::judged(const std::string& text, bool quick) const {

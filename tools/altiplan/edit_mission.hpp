@@ -8,6 +8,7 @@
 
 #include "check_plan.hpp"
 #include "host/edit/page_request.hpp"
+#include "host/view/basemap.hpp"
 
 namespace altiplan::cli {
 
@@ -25,8 +26,8 @@ struct MovableItem {
 class MissionEditor {
  public:
   /// Judges the mission as it is; throws as judged_plan, and Error for a format whose items cannot
-  /// be changed.
-  MissionEditor(PlanCheck check, host::Overrides overrides);
+  /// be changed. `basemap` may be null.
+  MissionEditor(PlanCheck check, host::Overrides overrides, host::Basemap* basemap);
 
   host::PageAnswer answer(const host::PageRequest& request);
 
@@ -38,7 +39,8 @@ class MissionEditor {
     std::vector<MovableItem> items;
   };
 
-  host::PageAnswer page();
+  /// What the page has at first.
+  host::Json scene();
   host::Json change(const host::Json& wish);
   host::Json saved(const host::Json& wish);
   /// Judges the text; quickly in the world that is there, which the files may no longer describe.
@@ -54,6 +56,7 @@ class MissionEditor {
 
   const PlanCheck check_;
   const host::Overrides overrides_;
+  host::Basemap* const basemap_;
   std::mutex mutex_;           ///< guards what follows
   std::vector<State> states_;  ///< the first is the file's, the ones after now_ are undone
   std::size_t now_ = 0;

@@ -68,6 +68,13 @@ void add_autopilot_options(App& command, MissionOptions& mission) {
 }
 }  // namespace
 
+Option* add_basemap(App& command, std::optional<std::string>& file) {
+  return command.add_option(
+      "--basemap FILE", file,
+      "show this image on the ground of the page: GeoTIFF, or MBTiles of PNG or "
+      "JPEG tiles");
+}
+
 Option* add_permission(App& command, std::vector<std::string>& permitted) {
   return command
       .add_option("--permission [ZONE]", permitted,

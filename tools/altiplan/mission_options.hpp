@@ -20,6 +20,9 @@ struct MissionOptions {
 /// Adds --terrain, which is returned, and what goes with it: the world, and who flies.
 Option* add_mission_options(App& command, MissionOptions& mission);
 
+/// --basemap FILE, of pages.
+Option* add_basemap(App& command, std::optional<std::string>& file);
+
 /// --permission [ZONE] and --buffer METRES, of zones.
 Option* add_permission(App& command, std::vector<std::string>& permitted);
 Option* add_buffer(App& command, double& buffer_m);

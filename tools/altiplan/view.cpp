@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
+#include "host/view/basemap.hpp"
 #include "host/view/chromium.hpp"
 #include "host/view/film.hpp"
 #include "host/view/picture_svg.hpp"
@@ -24,6 +25,7 @@ struct ViewArguments {
   std::optional<std::string> mp4;
   std::optional<double> mp4_seconds;
   std::optional<double> cut_m;
+  std::optional<std::string> basemap;
   MissionOptions mission;
   host::Overrides overrides;
 
@@ -136,6 +138,19 @@ host::Scene scene_of(const std::vector<host::StoredResult>& results) {
   return host::build_scene(results, [&](const std::string& what) { activity.begin(what); });
 }
 
+/// The places of a mission's items, with the numbers that ground stations show.
+host::Json numbered(const host::ImportedRoute& drawn) {
+  host::Json items = host::Json::array();
+  int last = 0;  // a circle may have two places
+  for (std::size_t n = 0; n < std::min(drawn.items.size(), drawn.route.size()); ++n) {
+    if (const int number = drawn.items[n].number; number != last) {
+      items.push_back({{"number", number}, {"at", host::to_json(Polyline{drawn.route[n]})[0]}});
+      last = number;
+    }
+  }
+  return items;
+}
+
 /// A mission's line as it is flown, with the verdict of `check`.
 host::Scene scene_of_mission(const ViewArguments& arguments) {
   const std::string& file = arguments.results.front();
@@ -143,19 +158,31 @@ host::Scene scene_of_mission(const ViewArguments& arguments) {
     expect_apart(output, option, {file});
   }
   const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.overrides);
-  return host::line_scene(judged.line(judged.world.truth.frame()), judged.world);
+  host::Scene scene = host::line_scene(judged.line(judged.world.truth.frame()), judged.world);
+  scene.json["numbered"] = numbered(judged.report.imported);
+  return scene;
 }
 
 int view(const ViewArguments& arguments) {
   for (const auto& [file, option] : arguments.outputs()) {
     expect_writable(file, option);
+    if (arguments.basemap) {
+      expect_apart(file, option, {*arguments.basemap});
+    }
+  }
+  std::optional<host::Basemap> basemap;
+  if (arguments.basemap) {
+    basemap.emplace(*arguments.basemap);
   }
   const std::optional<host::FilmMakers> makers =
       arguments.mp4 ? std::optional<host::FilmMakers>(std::in_place) : std::nullopt;
-  const host::Scene scene = arguments.mission.plan.plan.empty() ? scene_of(read_results(arguments))
-                                                                : scene_of_mission(arguments);
+  host::Scene scene = arguments.mission.plan.plan.empty() ? scene_of(read_results(arguments))
+                                                          : scene_of_mission(arguments);
   for (const std::string& warning : scene.warnings) {
     warn(warning);
+  }
+  if (basemap) {
+    busy("bringing the basemap into the scene", [&] { basemap->add_to(scene.json, scene.frame); });
   }
   const std::string page = host::viewer_page(scene.json);
   if (arguments.page) {
@@ -186,6 +213,9 @@ void add_view(App& app, Action& action) {
   const auto prepare = [](ViewArguments& arguments) {
     if (!arguments.page && !arguments.png && !arguments.svg && !arguments.mp4) {
       throw UsageError{"-o, --png, --svg or --mp4 is required"};
+    }
+    if (arguments.basemap && !arguments.page && !arguments.png && !arguments.mp4) {
+      throw UsageError{"--basemap is shown by -o, --png and --mp4"};
     }
     const std::vector<std::string>& files = arguments.results;
     for (const std::string& file : files) {
@@ -225,6 +255,7 @@ void add_view(App& app, Action& action) {
                   "length of the film (s); default: a thirtieth of the flight, but 20 to 120 s")
       ->check(number_from(1, 600))
       ->needs(mp4);
+  add_basemap(command, arguments.basemap);
   add_mission_options(command, arguments.mission);
   add_plugin_path(command, arguments.overrides);
   set_example(command, "altiplan view result.json -o page.html");

@@ -54,8 +54,10 @@ Value applied(Value tree, const std::vector<std::string>& set, FileOfKey file) {
 }  // namespace
 
 EditSession::EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assignment> given,
-                         Frame frame, std::filesystem::path folder, PlanLine& line)
+                         Frame frame, std::filesystem::path folder, PlanLine& line,
+                         Basemap* basemap)
     : line_(line),
+      basemap_(basemap),
       frame_(std::move(frame)),
       folder_(std::move(folder)),
       opened_(pipelines.size()),
@@ -111,6 +113,9 @@ PageAnswer EditSession::page() {
   scene["edit"] = std::move(state_now);
   for (const RouteFormat& format : route_formats()) {
     scene["edit_formats"].push_back({format.name, format.extension});
+  }
+  if (basemap_ != nullptr) {
+    basemap_->add_to(scene, frame_);
   }
   return edited_page(scene);
 }

@@ -10,6 +10,7 @@
 #include "host/edit/edits.hpp"
 #include "host/edit/page_request.hpp"
 #include "host/edit/plan_process.hpp"
+#include "host/view/basemap.hpp"
 
 namespace altiplan::host {
 
@@ -18,9 +19,10 @@ namespace altiplan::host {
 class EditSession {
  public:
   /// `line` leads to the process that plans. `given` were in force when the files were opened,
-  /// `frame` is that of their world, and `folder` is for files that last as long as the session.
+  /// `frame` is that of their world, `folder` is for files that last as long as the session, and
+  /// `basemap` may be null.
   EditSession(std::vector<EditedPipeline> pipelines, std::vector<Assignment> given, Frame frame,
-              std::filesystem::path folder, PlanLine& line);
+              std::filesystem::path folder, PlanLine& line, Basemap* basemap);
 
   PageAnswer answer(const PageRequest& request);
 
@@ -65,6 +67,7 @@ class EditSession {
   std::string world() const;
 
   PlanLine& line_;
+  Basemap* const basemap_;
   const Frame frame_;
   const std::filesystem::path folder_;
   const std::size_t opened_;  ///< the number of pipelines with a file of their own

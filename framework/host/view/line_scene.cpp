@@ -51,7 +51,7 @@ Scene line_scene(const JudgedLine& judged, const Mission& world) {
   const Mission mission = mission_of(judged, world);
   const Box& box = mission.request.volume;
   SceneNotes notes;
-  Scene scene{world_scene(judged.verdict, mission, {}, box, notes), {}};
+  Scene scene{world_scene(judged.verdict, mission, {}, box, notes), {}, mission.truth.frame()};
   drop_what_is_beside(scene.json, box);
   add_line(scene.json, judged, mission.request, notes);
   scene.warnings = notes.warnings();

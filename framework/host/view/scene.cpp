@@ -149,7 +149,7 @@ class SceneBuilder {
     name_apart(all);
     scene_["notes"] = notes_.lines();
     scene_["results"] = std::move(all);
-    return {std::move(scene_), notes_.warnings()};
+    return {std::move(scene_), notes_.warnings(), std::move(frame_)};
   }
 
  private:
@@ -187,6 +187,7 @@ class SceneBuilder {
     if (scene_.is_null()) {
       box_ = scene_box(mission, results_);
       seed_ = config.seed;
+      frame_ = mission.truth.frame();
       scene_ = world_scene(title_of(config), mission, build_events(config, mission), box_, notes_);
     } else if (config.seed != seed_) {
       // Only the built worlds show whether a layer depends on the run's seed.
@@ -230,6 +231,7 @@ class SceneBuilder {
   std::shared_ptr<Registry> registry_;
   Json scene_;
   Box box_;
+  Frame frame_;
   std::int64_t seed_ = 0;
   SceneNotes notes_;
 };

@@ -17,6 +17,7 @@ namespace altiplan::host {
 struct Scene {
   Json json;
   std::vector<std::string> warnings;  ///< for the user, before viewing
+  Frame frame;                        ///< of its world
 };
 
 /// Called with what is being done, before it and while it goes on.

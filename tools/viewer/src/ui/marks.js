@@ -8,6 +8,8 @@ import {violations_of} from './violations.js';
 
 const kMaxViolations = 200;
 const kToldViolations = 3;
+// Of a longer mission every second, third, … item has its number.
+const kMaxNumbers = 200;
 // Pixels from a mark's middle to its rim.
 const kRadius = 8;
 const kBodyRadius = 11;
@@ -48,6 +50,9 @@ function fill(marks, view, world, store) {
     const text = scene.edit && nth < kToldViolations ? message : '';
     add('violation', text, () => store.state.shown.has(line) ? place : null);
   });
+  const numbered = scene.numbered ?? [];
+  const every = Math.ceil(numbered.length / kMaxNumbers);
+  numbered.filter((_, nth) => nth % every === 0).forEach(({number, at}) => add('via', `${number}`, () => at));
   for (const line of world.lines.filter(({kind}) => kind === 'track')) {
     add_vehicle(line, add, view, world, store);
   }
