@@ -16,13 +16,16 @@ export const kPens = [{every: 1, width: 1, strength: 0.4, close: 4},
 /** What changes less per pixel is level: its noise would be contours. */
 export const kLevelMetres = 1e-3;
 
-/** How much darker contours make a pixel at a level, counted in contours, that changes by so much to the next ones. */
+/** How much darker contours make a pixel at a level, counted in contours, that changes by so much to
+ *  the next pixels. */
 export function contour_strength(level, per_pixel) {
   let most = 0;
   for (const {every, width, strength, close} of kPens) {
     const away = Math.abs(level - every * Math.round(level / every)) / per_pixel;
     const near = (width + 1) / 2 - away;
-    if (near > 0) most = Math.max(most, strength * Math.min(1, near) * Math.min(1, Math.max(0, 2 - close * per_pixel)));
+    if (near <= 0) continue;
+    const faded = Math.min(1, Math.max(0, 2 - close * per_pixel));
+    most = Math.max(most, strength * Math.min(1, near) * faded);
   }
   return most;
 }

@@ -120,12 +120,13 @@ function heights_of({scene, contour_step: apart}) {
 /** Where there is room, and no ground in front. */
 function place_heights(heights, view, room, wanted) {
   for (const label of heights) {
-    const seen = wanted && view.project(label.place);
-    const free = seen && seen.visible && room.is_free(around([seen.x, seen.y], label.size), kBetweenHeights);
-    const ground = free && view.ground_at(seen.x, seen.y);
-    const hidden = !ground || Math.hypot(...ground.map((value, axis) => value - label.place[axis])) > kNear * view.world.frame.diagonal;
-    show(label, hidden ? null : [seen.x, seen.y]);
-    if (!hidden) room.take(around([seen.x, seen.y], label.size));
+    const seen = wanted ? view.project(label.place) : null;
+    const taken = seen?.visible && around([seen.x, seen.y], label.size);
+    const ground = taken && room.is_free(taken, kBetweenHeights) && view.ground_at(seen.x, seen.y);
+    const is_there = ground && kNear * view.world.frame.diagonal >
+      Math.hypot(...ground.map((value, axis) => value - label.place[axis]));
+    show(label, is_there ? [seen.x, seen.y] : null);
+    if (is_there) room.take(taken);
   }
 }
 

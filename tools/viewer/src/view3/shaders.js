@@ -54,17 +54,20 @@ export function basemap_on({frame, basemap, scene}) {
   texture.colorSpace = scene.ground ? NoColorSpace : SRGBColorSpace;
   texture.premultiplyAlpha = texture.needsUpdate = true;
   return {basemap: {value: texture}, basemap_shown: {value: 0}, basemap_place: {value:
-    new Vector4(low[0] - frame.centre[0], low[1] - frame.centre[1], high[0] - low[0], high[1] - low[1])}};
+    new Vector4(...frame.local([...low, 0]).slice(0, 2), high[0] - low[0], high[1] - low[1])}};
 }
 
 const strength_of = ({every, width, strength, close}) => `${strength} *
-  clamp(${((width + 1) / 2).toFixed(1)} - ${every}.0 * abs(fract(level / ${every}.0 + 0.5) - 0.5) / per_pixel, 0.0, 1.0) *
+  clamp(${((width + 1) / 2).toFixed(1)} -
+    ${every}.0 * abs(fract(level / ${every}.0 + 0.5) - 0.5) / per_pixel, 0.0, 1.0) *
   clamp(2.0 - ${close}.0 * per_pixel, 0.0, 1.0)`;
 // As `contour_strength`.
 const kContours = `if (contours.x > 0.0) {
   float level = (own_place.z + contours.y) / contours.x;
   float per_pixel = fwidth(level);
-  if (per_pixel * contours.x > ${kLevelMetres}) diffuseColor.rgb *= 1.0 - max(${kPens.map(strength_of)});
+  if (per_pixel * contours.x > ${kLevelMetres}) {
+    diffuseColor.rgb *= 1.0 - max(${kPens.map(strength_of)});
+  }
 }\n`;
 
 /** Of the ground: pressed down, of the colour `inside` where it is cut; `contours` are the metres
