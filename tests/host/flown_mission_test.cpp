@@ -537,6 +537,17 @@ TEST(FlownMission, APlaneLevelsOffAboveItsTakeOff) {
   EXPECT_LT(outside(flown, 500, 0, 69), 0.1);  // at once, above the ramp
 }
 
+TEST(FlownMission, APlaneTakesOffAnywhereWithinTenDegrees) {
+  FlightOptions options;
+  options.runway_deg = 90;
+  const FlownMission flown =
+      fly({command(22, 0, 0, 50), command(16, 1600, 0, 50)}, kPlane, options);
+  for (int degrees = -10; degrees <= 10; ++degrees) {
+    const double course = radians(degrees);
+    EXPECT_LT(outside(flown, 650 * std::cos(course), 650 * std::sin(course), 48), 0.1) << degrees;
+  }
+}
+
 TEST(FlownMission, APlanesSpeedChangesOnTheNextWay) {
   const FlownMission flown = fly({command(16, -2000, 0, 100), command(16, 0, 0, 100),
                                   order(178, {0, 20, -1, 0}), command(16, 0, 2000, 100)},

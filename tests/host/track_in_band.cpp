@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// track_in_band MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK: which share of a
-// track that ArduPilot flew lies in the band that is predicted for the mission. TRACK has lines
-// "longitude,latitude,altitude,item" (degrees, metres above sea level), RUNWAY is the heading of an
-// aeroplane's take-off. Prints a line of JSON: the lengths flown and outside, of the whole track
-// and of each item, and the place that is farthest outside.
+// track_in_band MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK [WIND]: which share
+// of a track that ArduPilot flew lies in the band that is predicted for the mission. TRACK has
+// lines "longitude,latitude,altitude,item" (degrees, metres above sea level), RUNWAY is the heading
+// of an aeroplane's take-off, WIND the strongest one in m/s. Prints a line of JSON: the lengths
+// flown and outside, of the whole track and of each item, and the place that is farthest outside.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -174,8 +174,8 @@ Json compare(const formats::MissionFile& plan, const FlownMission& flown, const 
 }
 
 int run(const std::vector<std::string>& words) {
-  if (words.size() != 6) {
-    throw Error("expected MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK");
+  if (words.size() != 6 && words.size() != 7) {
+    throw Error("expected MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK [WIND]");
   }
   const formats::MissionFile plan = formats::read_mission(words[0]);
   if (!plan.home || plan.commands.empty()) {
@@ -191,6 +191,7 @@ int run(const std::vector<std::string>& words) {
   if (words[3] != "-") {
     options.runway_deg = std::stod(words[3]);
   }
+  options.wind_mps = words.size() > 6 ? std::stod(words[6]) : 0;
   const World world = world_of(words[4], *plan.home);
   const FlownMission flown =
       fly_mission(plan, {formats::Firmware::ardupilot, airframe}, world, options);

@@ -95,9 +95,9 @@ void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double hea
       against * (is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0]
                         : std::tan(radians(flight_.parameter("PTCH_LIM_MAX_DEG"))));
   const double shallow = with * (is_px4 ? 2 / speed_mps[1] : std::tan(radians(4)));
-  constexpr int kRays = 5;
-  for (int ray = 0; ray < kRays; ++ray) {
-    const double course = heading + spread * (2.0 * ray / (kRays - 1) - 1);
+  const int gaps = int(std::ceil(spread * height / shallow / kBesidePath));  // side by side
+  for (int ray = 0; ray <= gaps; ++ray) {
+    const double course = heading + spread * (2.0 * ray / std::max(gaps, 1) - 1);
     const Vec3 near(from.x() + height / steep * std::cos(course),
                     from.y() + height / steep * std::sin(course), foot + shallow * height / steep);
     const Vec3 far(from.x() + height / shallow * std::cos(course),
