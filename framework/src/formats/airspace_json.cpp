@@ -16,14 +16,14 @@ using Json = nlohmann::json;
 using Format = Airspace::Format;
 
 std::string text_at(const JsonNode& node, const char* key) {
-  if (!node.has(key)) {
+  const auto value = node.json().find(key);
+  if (value == node.json().end()) {
     return "";
   }
-  const Json& value = node.at(key).json();
-  if (value.is_string()) {
-    return printable(value.get<std::string>());
+  if (value->is_string()) {
+    return printable(value->get_ref<const std::string&>());
   }
-  return value.is_number() ? value.dump() : "";
+  return value->is_number() ? value->dump() : "";
 }
 
 /// A name, or the first of a list of names in several languages.
@@ -42,11 +42,10 @@ void set_names(Zone& zone, const std::string& id, const std::string& name) {
 
 LimitText limit_at(const JsonNode& node, const char* key, const char* reference, const char* unit) {
   LimitText limit{{}, text_at(node, unit), text_at(node, reference), ""};
-  if (node.has(key)) {
-    const Json& value = node.at(key).json();
-    limit.found = short_text(value);
-    if (value.is_number()) {
-      limit.value = value.get<double>();
+  if (const auto value = node.json().find(key); value != node.json().end()) {
+    limit.found = short_text(*value);
+    if (value->is_number()) {
+      limit.value = value->get<double>();
     }
   }
   return limit;

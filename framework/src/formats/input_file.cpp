@@ -151,10 +151,12 @@ std::string read_file(const std::string& file, std::uintmax_t max_bytes) {
   }
   // A file of size 0 may have content, as below /proc, and a growing file gets longer.
   constexpr std::size_t kBlock = 65536;
-  std::string text;
+  std::string text(std::size_t(found.st_size) + 1, '\0');
   std::size_t size = 0;
   while (true) {
-    text.resize(std::max(size + kBlock, std::size_t(found.st_size) + 1));
+    if (size == text.size()) {
+      text.resize(size + kBlock);
+    }
     const ssize_t got = ::read(opened.number(), text.data() + size, text.size() - size);
     if (got == 0) {
       break;

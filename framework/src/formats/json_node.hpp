@@ -28,10 +28,11 @@ class JsonNode {
     if (!json_->is_object()) {
       wrong("an object");
     }
-    if (!json_->contains(key)) {
+    const auto value = json_->find(key);
+    if (value == json_->end()) {
       throw Error((place_.empty() ? "" : place_ + ": ") + "the key '" + key + "' is missing");
     }
-    return {(*json_)[key], place_.empty() ? key : place_ + "." + key};
+    return {*value, place_.empty() ? key : place_ + "." + key};
   }
   JsonNode at(std::size_t n) const { return {(*json_)[n], place_ + "." + std::to_string(n)}; }
   std::size_t size() const {

@@ -2,7 +2,10 @@
 #include "text_file.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
 
 #include "altiplan/error.hpp"
 
@@ -14,84 +17,188 @@ using namespace nlohmann::literals;
 
 constexpr std::size_t kMaxDepth = 64;
 
-/// Builds the value, and refuses what the library's own builder passes over: a key given twice, of
-/// which it keeps the last, and nesting so deep that printing or freeing would overflow the stack.
-class Builder final : public Json::json_sax_t {
+/// The library's own reader takes three times as long, and passes over a key given twice, of which
+/// it keeps the last, and nesting so deep that printing or freeing would overflow the stack.
+class Reader {
  public:
-  Builder(const std::string& file, const std::string& text, const OnItem& on_item)
+  /// The text ends with a byte of value 0, and has no other.
+  Reader(const std::string& file, const std::string& text, const OnItem& on_item)
       : file_(file), text_(text), on_item_(on_item) {}
-  Json take() { return std::move(root_); }
 
-  bool null() override { return put(nullptr); }
-  bool boolean(bool value) override { return put(value); }
-  bool number_integer(std::int64_t value) override { return put(value); }
-  bool number_unsigned(std::uint64_t value) override { return put(value); }
-  bool number_float(double value, const std::string& /*text*/) override { return put(value); }
-  bool string(std::string& value) override { return put(std::move(value)); }
-  bool binary(Json::binary_t& /*value*/) override { return false; }  // not of text
-  bool start_object(std::size_t /*size*/) override { return open(Json::object()); }
-  bool start_array(std::size_t /*size*/) override { return open(Json::array()); }
-  bool end_object() override { return close(); }
-  bool end_array() override { return close(); }
-
-  bool key(std::string& name) override {
-    const auto [member, is_new] =
-        open_.back()->get_ref<Json::object_t&>().try_emplace(std::move(name));
-    if (!is_new) {
-      throw Error(file_ + ": the key \"" + member->first + "\" is given twice in one object");
+  Json document() {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    at_ += text_.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    Json value;
+    read(value);
+    if (next() != '\0') {
+      fail();
     }
-    last_ = &member->second;
-    if (open_.size() == 1) {
-      key_ = member->first;
-    }
-    return true;
-  }
-
-  bool parse_error(std::size_t position, const std::string& /*token*/,
-                   const Json::exception& error) override {
-    constexpr int kOverflow = 406;
-    if (error.id == kOverflow) {
-      throw Error(file_ + ": contains a number that is too large (beyond 1.8e308)");
-    }
-    throw Error(file_ + ": is not valid JSON: it ends early or has an error in line " +
-                std::to_string(line_at(text_, position)));
+    return value;
   }
 
  private:
-  template <class Value>
-  bool put(Value&& value) {
-    if (!open_.empty() && open_.back()->is_array()) {
-      auto& list = open_.back()->get_ref<Json::array_t&>();
-      last_ = &list.emplace_back(std::forward<Value>(value));
-    } else {
-      *last_ = std::forward<Value>(value);  // a member, or the whole
-    }
-    return true;
+  [[noreturn]] void fail() const {
+    throw Error(file_ + ": is not valid JSON: it ends early or has an error in line " +
+                std::to_string(line_at(text_, std::size_t(at_ - text_.c_str()))));
   }
-  bool open(Json&& value) {
-    if (open_.size() == kMaxDepth) {
+
+  char next() {
+    while (*at_ == ' ' || *at_ == '\n' || *at_ == '\t' || *at_ == '\r') {
+      ++at_;
+    }
+    return *at_;
+  }
+
+  void take(std::string_view word) {
+    for (const char letter : word) {
+      if (*at_ != letter) {
+        fail();
+      }
+      ++at_;
+    }
+  }
+
+  void read(Json& value) {
+    switch (next()) {
+      case '{':
+        value = Json::object();
+        return read_list('}', [&] { read_member(value); });
+      case '[':
+        value = Json::array();
+        return read_list(']', [&] { read_item(value); });
+      case '"':
+        value = read_string();
+        return;
+      case 't':
+        value = true;
+        return take("true");
+      case 'f':
+        value = false;
+        return take("false");
+      case 'n':
+        return take("null");
+      default:
+        read_number(value);
+    }
+  }
+
+  template <class ReadOne>
+  void read_list(char end, const ReadOne& read_one) {
+    if (depth_ == kMaxDepth) {
       throw Error(file_ + ": lists and objects are nested more than " + std::to_string(kMaxDepth) +
                   " levels deep");
     }
-    put(std::move(value));
-    open_.push_back(last_);
-    return true;
-  }
-  bool close() {
-    open_.pop_back();
-    if (on_item_ && open_.size() == 2 && open_[0]->is_object() && open_[1]->is_array()) {
-      on_item_(key_, open_[1]->back());
+    ++depth_;
+    ++at_;
+    if (next() != end) {
+      for (read_one(); next() == ','; read_one()) {
+        ++at_;
+      }
     }
-    return true;
+    take({&end, 1});
+    --depth_;
+  }
+
+  void read_member(Json& object) {
+    if (next() != '"') {
+      fail();
+    }
+    const auto [member, is_new] = object.get_ref<Json::object_t&>().try_emplace(read_string());
+    if (!is_new) {
+      throw Error(file_ + ": the key \"" + member->first + "\" is given twice in one object");
+    }
+    if (depth_ == 1) {
+      key_ = &member->first;
+    }
+    next();
+    take(":");
+    read(member->second);
+  }
+
+  void read_item(Json& list) {
+    Json& item = list.get_ref<Json::array_t&>().emplace_back();
+    read(item);
+    if (on_item_ && depth_ == 2 && key_ != nullptr && item.is_structured()) {
+      on_item_(*key_, item);
+    }
+  }
+
+  std::string read_string() {
+    const char* const start = at_++;
+    const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+    while (is_plain(*at_)) {
+      ++at_;
+    }
+    if (*at_ == '"') {
+      return {start + 1, at_++};
+    }
+    for (; *at_ != '"'; ++at_) {
+      at_ += *at_ == '\\' ? 1 : 0;
+      if (static_cast<unsigned char>(*at_) < ' ') {
+        fail();
+      }
+    }
+    ++at_;
+    Json text = Json::parse(start, at_, nullptr, false);  // escapes, and letters beyond ASCII
+    if (text.is_discarded()) {
+      fail();
+    }
+    return std::move(text.get_ref<std::string&>());
+  }
+
+  void take_digits() {
+    const auto is_digit = [&] { return *at_ >= '0' && *at_ <= '9'; };
+    if (!is_digit()) {
+      fail();
+    }
+    while (is_digit()) {
+      ++at_;
+    }
+  }
+
+  void read_number(Json& value) {
+    const char* const start = at_;
+    at_ += *at_ == '-' ? 1 : 0;
+    if (*at_ == '0') {
+      ++at_;
+    } else {
+      take_digits();
+    }
+    const char* const end_of_whole = at_;
+    if (*at_ == '.') {
+      ++at_;
+      take_digits();
+    }
+    if (*at_ == 'e' || *at_ == 'E') {
+      ++at_;
+      at_ += *at_ == '+' || *at_ == '-' ? 1 : 0;
+      take_digits();
+    }
+    const auto is_read_as = [&](auto number) {
+      const bool fits = std::from_chars(start, at_, number).ec == std::errc();
+      if (fits) {
+        value = number;
+      }
+      return fits;
+    };
+    const bool is_whole = at_ == end_of_whole;
+    if ((is_whole && (*start == '-' ? is_read_as(std::int64_t{}) : is_read_as(std::uint64_t{}))) ||
+        is_read_as(double{})) {
+      return;
+    }
+    const double number = std::strtod(start, nullptr);  // too small, or too large
+    if (!std::isfinite(number)) {
+      throw Error(file_ + ": contains a number that is too large (beyond 1.8e308)");
+    }
+    value = number;
   }
 
   const std::string& file_;
   const std::string& text_;
   const OnItem& on_item_;
-  std::string key_;  ///< of the document's member that is read
-  Json root_;
-  Json* last_ = &root_;      ///< where the next value goes, outside of lists
-  std::vector<Json*> open_;  ///< lists and objects, the innermost last
+  const char* at_ = text_.c_str();
+  std::size_t depth_ = 0;             ///< of lists and objects
+  const std::string* key_ = nullptr;  ///< of the document's member that is read
 };
 }  // namespace
 
@@ -105,9 +212,7 @@ Json parse_json(const std::string& file, const std::string& text, const OnItem& 
     throw Error(file + ":" + std::to_string(line_at(text, at)) +
                 ": expected JSON, found a byte of value 0");
   }
-  Builder builder(file, text, on_item);
-  Json::sax_parse(text, &builder);
-  return builder.take();
+  return Reader(file, text, on_item).document();
 }
 
 void expect_wgs84(const Json& document) {
