@@ -291,6 +291,9 @@ class Gate {
   }
 
   void add_cures(PlanReport& report) {
+    if (std::none_of(ways_.begin(), ways_.end(), [](const auto& way) { return way.has_value(); })) {
+      return;  // the search begins with a flight of the whole mission
+    }
     Cures search = cures();
     std::map<std::pair<std::size_t, std::size_t>, std::optional<Cure>> found;
     for (std::size_t n = 0; n < report.findings.size(); ++n) {
