@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include "altiplan/error.hpp"
@@ -73,6 +75,20 @@ bool is_small(const std::vector<fs::path>& files) {
     bytes += fs::file_size(file);
   }
   return bytes <= kMax;
+}
+
+/// True for a sidecar of statistics alone, which programs leave beside models that they show.
+bool holds_only_statistics(const fs::path& file) {
+  constexpr std::array<std::string_view, 5> kKnown{"/", "PAMDataset>", "PAMRasterBand band=\"1\">",
+                                                   "Metadata>", "MDI key=\"STATISTICS_"};
+  const std::string text = altiplan::formats::read_file(file.string());
+  bool knows_all = file.string().ends_with(".aux.xml");
+  for (std::size_t at = 0; knows_all && (at = text.find('<', at)) != text.npos;) {
+    const std::string_view element = std::string_view(text).substr(++at);
+    knows_all = std::any_of(kKnown.begin(), kKnown.end(),
+                            [&](std::string_view known) { return element.starts_with(known); });
+  }
+  return knows_all;
 }
 
 /// The model's file and those that belong to it.
@@ -313,7 +329,7 @@ void expect_few(const Params& params, const Dem& dem, const Part& part) {
 
 Dem read_dem(const Params& params, bool may_read_a_part) try {
   const std::vector<fs::path> files = look_up(params);
-  if (files.size() == 1 && is_small(files)) {
+  if (is_small(files) && std::all_of(files.begin() + 1, files.end(), holds_only_statistics)) {
     if (std::optional<Dem> plain = read_plain(params, files.front())) {
       plain->file = params.file;
       return std::move(*plain);

@@ -41,7 +41,8 @@ class PlainModels : public MadeFiles {
     fs::create_directories(folder_ / "beside");
     const fs::path copy = folder_ / "beside" / file.filename();
     fs::copy_file(file, copy, fs::copy_options::overwrite_existing);
-    write("beside/" + file.filename().string() + ".aux.xml", "<PAMDataset></PAMDataset>");
+    write("beside/" + file.filename().string() + ".aux.xml",
+          "<PAMDataset><Metadata><MDI key=\"A\">1</MDI></Metadata></PAMDataset>");
     return copy;
   }
 
@@ -137,7 +138,18 @@ TEST_F(PlainModels, SrtmTilesAreReadAsGdalReadsThem) {
 }
 
 TEST_F(PlainModels, SidecarsAreLeftToGdal) {
-  expect_ending(with_sidecar(write("S23W068.hgt", srtm())), "", kWith);
+  const fs::path file = write("S23W068.hgt", srtm());
+  expect_ending(with_sidecar(file), "", kWith);
+  const std::string statistics =
+      R"(<PAMDataset><PAMRasterBand band="1"><Metadata><MDI key="STATISTICS_MEAN">5</MDI></Metadata>)";
+  const auto beside = [&](const std::string& more) {
+    write("S23W068.hgt.aux.xml", statistics + more + "</PAMRasterBand></PAMDataset>");
+  };
+  beside("");
+  expect_ending(file, "", kWithout);
+  expect_same(file);
+  beside("<NoDataValue>7</NoDataValue>");
+  expect_ending(file, "", kWith);
 }
 
 TEST_F(PlainModels, MasksAreNotTakenForHeights) {
