@@ -390,25 +390,41 @@ class CheckPlan(PlanCase):
         two, _ = self.call("mission.plan", "--terrain", "tiles", "--terrain", TERRAIN, "--min-agl", "10", code=0)
         self.assertEqual(one.splitlines()[0], two.splitlines()[0])
 
-    def test_tiles_leave_no_gaps_on_long_missions(self):
-        """Over tiles of a degree, where lengths are wrong in longitude and latitude: along a seam, and across."""
+    def write_tiles(self):
+        """Of a degree, where lengths are wrong in longitude and latitude."""
         (self.folder / "tiles").mkdir()
-        for lat in (40, 41, 42):
-            for lon in (10, 11):
-                summit = lambda i, j: 600 + 13 * ((i * 7 + j * 5 + lat) % 11)  # of the post, from the north-west
-                rows = "\n".join(" ".join(str(summit(i, j)) for i in range(61)) for j in range(61))
-                (self.folder / f"tiles/{lat}_{lon}.asc").write_text(
-                    f"ncols 61\nnrows 61\nxllcenter {lon}\nyllcenter {lat}\ncellsize {1 / 60:.12f}\n{rows}\n")
+        for lat, lon in ((lat, lon) for lat in (40, 41, 42) for lon in (10, 11)):
+            summit = lambda i, j: 600 + 13 * ((i * 7 + j * 5 + lat) % 11)  # of the post, from the north-west
+            rows = "\n".join(" ".join(str(summit(i, j)) for i in range(61)) for j in range(61))
+            (self.folder / f"tiles/{lat}_{lon}.asc").write_text(
+                f"ncols 61\nnrows 61\nxllcenter {lon}\nyllcenter {lat}\ncellsize {1 / 60:.12f}\n{rows}\n")
+
+    def over_tiles(self, way, height, code):
+        self.write([item([*at, height], n + 1) for n, at in enumerate(way)],
+                   plannedHomePosition=[way[0][1], way[0][0], 700])
+        out, _ = self.call("mission.plan", "--terrain", "tiles", "--crs", "EPSG:4326", "--min-agl", "50", code=code)
+        return out
+
+    def test_tiles_leave_no_gaps_on_long_missions(self):
+        """Along a seam, and across."""
+        self.write_tiles()
         ways = {"diagonal": [[10.2, 40.2], [10.9, 41.2], [11.7, 42.5]], "seam": [[11, 40.3], [11, 42.5]]}
         for name, way in ways.items():
             for height, code in ((1000, 0), (740, 1)):
                 with self.subTest(name, height=height):
-                    self.write([item([*at, height], n + 1) for n, at in enumerate(way)],
-                               plannedHomePosition=[way[0][1], way[0][0], 700])
-                    out, _ = self.call("mission.plan", "--terrain", "tiles", "--crs", "EPSG:4326", "--min-agl", "50",
-                                       code=code)
+                    out = self.over_tiles(way, height, code)
                     self.assertNotIn("no ground of known height", out)
                     self.assertEqual("the height above ground is" in out, code == 1, out)
+
+    def test_a_missing_tile_is_closed_and_the_others_are_one_model(self):
+        around = [[10.2, 40.2], [10.5, 41.2], [10.9, 42.2], [11.7, 42.5]]
+        self.write_tiles()
+        whole = self.over_tiles(around, 1000, 0).splitlines()[0]
+        (self.folder / "tiles/41_11.asc").unlink()
+        self.assertEqual(self.over_tiles(around, 1000, 0).splitlines()[0], whole)
+        self.assertIn("the height above ground is", self.over_tiles(around, 740, 1))
+        self.assertIn("void of the elevation model", self.over_tiles([[10.5, 41.2], [11.5, 42.5]], 1000, 1))
+        self.assertIn("void of the elevation model", self.over_tiles([[11.5, 40.5], [11.5, 42.5]], 9000, 1))
 
     def test_the_model_below_the_mission_gives_the_frame(self):
         """Models of other regions that are named first change no figure, and hide no zone."""

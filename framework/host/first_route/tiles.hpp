@@ -43,9 +43,8 @@ std::vector<Tile> read_tiles(const RouteWish& wish, Registry& registry);
 /// Drops those that do not reach into the box of that frame.
 void drop_distant(std::vector<Tile>& tiles, const Frame& frame, const Box& reached);
 
-/// One model of them all where they are of one grid and fill a rectangle: where they have to be
-/// resampled, each alone ends within its own sides, and gaps are left between them. Else as they
-/// are.
+/// One model of them all where they are of one grid: where they have to be resampled, each alone
+/// ends within its own sides, and gaps are left between them. Else as they are.
 std::vector<Tile> united(std::vector<Tile> tiles, Registry& registry);
 
 /// Throws Error for a point beyond all tiles, naming what they cover, and, where the point with its

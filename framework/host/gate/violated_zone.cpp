@@ -52,7 +52,8 @@ void name_void(Finding& finding, const World& world) {
   if (is_of_ground && ground && *ground >= kUnknownGround) {
     finding.is_over_void = true;
     finding.violation.message =
-        "passes over a void of the elevation model, where the ground is unknown (--fill-voids)";
+        "passes over a void of the elevation model, where the ground is unknown: give its tile, or "
+        "--fill-voids";
   }
 }
 }  // namespace altiplan::host

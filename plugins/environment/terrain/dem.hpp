@@ -32,8 +32,8 @@ struct Params {
         .required();
     f("tiles", tiles)
         .doc(
-            "further files of the same grid that fill a rectangle with `file`, side by side: they "
-            "are one model");
+            "further files of the same grid, side by side with `file`: they are one model, closed "
+            "where no tile lies");
     f("voids", voids,
       {{"refuse", Voids::refuse}, {"fill_m", Voids::fill_m}, {"neighbours", Voids::neighbours}})
         .doc(

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One model of several tiles: files of one grid that fill a rectangle side by side, with or without
-// a row of posts in common.
+// One model of several tiles: files of one grid side by side, with or without a row of posts in
+// common. Where no tile lies, nobody knows the ground: it is closed.
 #include "mosaic.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "altiplan/earth.hpp"
 
@@ -52,32 +51,6 @@ void put_on_grid(const Params& params, const Dem& first, Dem& tile) {
   }
   tile.place = {int(std::lround(at[0])), int(std::lround(at[1])), tile.columns, tile.rows};
 }
-
-/// True if each of the ranges (first post, number) begins at the latest where one before it ends.
-bool are_side_by_side(const std::set<std::array<int, 2>>& ranges) {
-  int end = ranges.begin()->at(0);
-  for (const auto& [first, count] : ranges) {
-    if (first > end) {
-      return false;
-    }
-    end = std::max(end, first + count);
-  }
-  return true;
-}
-
-/// True if there is one tile for each of the columns of tiles and each of the rows.
-bool fill_rectangle(const std::vector<Dem>& tiles) {
-  std::set<std::array<int, 2>> columns;
-  std::set<std::array<int, 2>> rows;
-  std::set<std::array<int, 2>> places;
-  for (const Dem& tile : tiles) {
-    columns.insert({tile.place.column, tile.place.columns});
-    rows.insert({tile.place.row, tile.place.rows});
-    places.insert({tile.place.column, tile.place.row});
-  }
-  return places.size() == tiles.size() && tiles.size() == columns.size() * rows.size() &&
-         are_side_by_side(columns) && are_side_by_side(rows);
-}
 }  // namespace
 
 Dem read_mosaic(const Params& params, bool may_read_a_part) {
@@ -92,10 +65,6 @@ Dem read_mosaic(const Params& params, bool may_read_a_part) {
     sides = {std::min(sides[0], tile.place.column), std::min(sides[1], tile.place.row),
              std::max(sides[2], tile.place.column + tile.columns),
              std::max(sides[3], tile.place.row + tile.rows)};
-  }
-  if (!fill_rectangle(tiles)) {
-    refuse(params, "its tiles fill no rectangle: give what lies apart as layers of their own",
-           "tiles");
   }
   const Dem& first = tiles.front();
   Dem all;
@@ -129,7 +98,7 @@ Dem read_mosaic(const Params& params, bool may_read_a_part) {
 Posts read_tiles(const Params& params, const Dem& dem, const Part& part) {
   expect_few(params, dem, part);
   Posts posts{part, {}, 0};
-  posts.heights.assign(std::size_t(part.columns) * std::size_t(part.rows), float(kLowest));
+  posts.heights.assign(std::size_t(part.columns) * std::size_t(part.rows), NAN);
   for (const Dem& tile : dem.tiles) {
     const int column = std::max(part.column, tile.place.column);
     const int row = std::max(part.row, tile.place.row);
@@ -151,9 +120,12 @@ Posts read_tiles(const Params& params, const Dem& dem, const Part& part) {
                   std::size_t(row + j - part.row) * std::size_t(part.columns) +
                   (column - part.column);
       std::transform(from, from + own.columns, to, to,
-                     [](float a, float b) { return std::max(a, b); });
+                     [](float a, float b) { return std::fmax(a, b); });
     }
   }
+  std::replace_if(
+      posts.heights.begin(), posts.heights.end(), [](float height) { return std::isnan(height); },
+      float(kHighest));
   return posts;
 }
 }  // namespace terrain

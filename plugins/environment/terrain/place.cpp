@@ -510,6 +510,9 @@ float height_at(const Posts& posts, const XY& post) {
   const int i = std::min(int(u), part.columns - 2);
   const int j = std::min(int(v), part.rows - 2);
   const float* h = posts.heights.data() + std::size_t(j) * std::size_t(part.columns) + i;
+  if (std::max({h[0], h[1], h[part.columns], h[part.columns + 1]}) >= kHighest) {
+    return float(kHighest);  // closed, as is what lies between it and ground
+  }
   const double s = u - i;
   const double w = v - j;
   return float((1 - w) * ((1 - s) * h[0] + s * h[1]) +
@@ -609,7 +612,7 @@ void raise_to(const View& view, const Layout& layout, const Posts& own, int net,
     const auto off = float(height - field);
     if (off > 0) {
       for (float* corner : {low, low + 1, high, high + 1}) {
-        *corner += off;
+        *corner = height >= kHighest ? float(kHighest) : *corner + off;
       }
     }
   });
