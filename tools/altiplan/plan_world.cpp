@@ -11,14 +11,13 @@
 #include "host/first_route/zones.hpp"
 #include "host/gate/plan_report.hpp"
 #include "host/result/result_json.hpp"
+#include "host/view/scene_parts.hpp"
 
 namespace altiplan::cli {
 namespace {
 
 using host::Json;
 
-/// Height of the ground where it is unknown, metres.
-constexpr double kClosed = 10'000;
 /// Of a flight without an end, seconds.
 constexpr double kLongest = 86400;
 /// Its time is known before its world is, but for what the ground adds.
@@ -168,9 +167,9 @@ std::vector<host::Tile> models_about(const PlanCheck& plan, const formats::Missi
 std::string world_text(const PlanCheck& plan, const formats::MissionFile& mission,
                        const host::Overrides& overrides) {
   // A void is closed: whatever flies over it flies into the ground.
-  const std::string voids = plan.fills_voids
-                                ? "voids: neighbours"
-                                : "voids: fill_m, fill_m: " + host::exact_json_text(kClosed);
+  const std::string voids =
+      plan.fills_voids ? "voids: neighbours"
+                       : "voids: fill_m, fill_m: " + host::exact_json_text(host::kClosedGround);
   std::string text = "altiplan: 1\nenvironment:\n";
   std::set<std::string> ids;
   for (const host::Tile& model : models_about(plan, mission, overrides)) {

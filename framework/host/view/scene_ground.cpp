@@ -32,7 +32,8 @@ Json posts_json(const Posts& posts, Json before, const Height& height) {
   heights.reserve(std::size_t(posts.nx) * std::size_t(posts.ny));
   for (int j = 0; j < posts.ny; ++j) {
     for (int i = 0; i < posts.nx; ++i) {
-      heights.push_back(height(i, j));
+      const float at = height(i, j);
+      heights.push_back(at < float(kClosedGround) ? at : kNone);
     }
   }
   // Not rounded: the error would accumulate with each post.

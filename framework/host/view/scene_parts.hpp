@@ -41,6 +41,9 @@ Json rounded(double value);
 Json rounded(const std::optional<double>& value);
 Json rounded(const Vec3& p);
 
+/// As high as voids are filled over which nothing may fly: shown as the holes that they are.
+inline constexpr double kClosedGround = 10'000;
+
 /// The world's ground within the box, or null: an elevation model by its own posts, every n-th if
 /// there are too many; any other ground by a regular grid.
 Json ground_json(const World& world, const Box& box, SceneNotes& notes);

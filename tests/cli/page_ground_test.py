@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""basemap_test.py PROGRAM SOURCES: `--basemap` of `altiplan view` and `edit`, with images that GDAL's programs make."""
+"""page_ground_test.py PROGRAM SOURCES: the ground in pages of `altiplan view` and `edit`: voids, and `--basemap` with
+images that GDAL's programs make."""
 import base64
 import json
 import math
@@ -21,7 +22,7 @@ OUTSIDE = ["-a_ullr", "10", "50", "11", "49", "-a_srs", "EPSG:4326"]
 PLACED = ["-a_ullr", *map(str, (WEST, NORTH, EAST, SOUTH)), "-a_srs", "EPSG:4326"]
 
 
-class Basemap(PlanCase):
+class PageGround(PlanCase):
     def setUp(self):
         super().setUp()
         self.plan = self.folder / "mission.plan"
@@ -190,6 +191,21 @@ class Basemap(PlanCase):
         subprocess.run([PROGRAM, "run", "pipeline.yaml", "--out", "result.json"], cwd=self.folder, check=True, capture_output=True)
         err = self.view(self.image("spots.tif", [self.spots()]), "result.json", "-o", "page.html", code=3)
         self.assertRegex(err, "the world has no geographic position")
+
+    def test_voids_that_are_closed_are_holes(self):
+        """And not as high as they are judged, ten times as high as the ground and its contours."""
+        self.gdal("gdal_translate", "-of", "ENVI", TERRAIN, "whole")
+        heights = numpy.fromfile(self.folder / "whole", numpy.int16).reshape(1, 344, 403)
+        heights[0, 150:160, 200:220] = -9999
+        corners = json.loads(subprocess.run(["gdalinfo", "-json", TERRAIN], check=True, capture_output=True).stdout)["cornerCoordinates"]
+        voids = self.image("voids.tif", heights, "-a_srs", "EPSG:4326", "-a_nodata", "-9999", "-a_ullr",
+                           *map(str, corners["upperLeft"] + corners["lowerRight"]))
+        subprocess.run([PROGRAM, "view", "mission.plan", "--terrain", voids, "-o", "page.html"], cwd=self.folder, check=True,
+                       capture_output=True)
+        ground = self.scene()["ground"]
+        shown = numpy.frombuffer(base64.b64decode(ground["heights"]), numpy.float32)
+        self.assertEqual(numpy.isnan(shown).sum(), 200)
+        self.assertLess(numpy.nanmax(shown), 1100)
 
     def test_pages_that_edit_have_it(self):
         name = self.image("spots.tif", [self.spots()])
