@@ -548,6 +548,20 @@ TEST(FlownMission, APlaneTakesOffAnywhereWithinTenDegrees) {
   }
 }
 
+// ArduPilot's aeroplane flew 141 m from the centre of such a circle.
+TEST(FlownMission, WindTakesAPlaneOutWhenItJoinsACircle) {
+  FlightOptions options;
+  options.parameters = {{"AIRSPEED_CRUISE", 22},
+                        {"AIRSPEED_MIN", 10},
+                        {"WP_LOITER_RAD", 80},
+                        {"NAVL1_PERIOD", 15},
+                        {"ROLL_LIMIT_DEG", 65}};
+  options.wind_mps = 4.1;
+  const FlownMission flown =
+      fly({command(16, -1000, 0, 150), command(17, 0, 0, 150)}, kPlane, options);
+  EXPECT_LT(outside(flown, 0, 143, 150), 0.1);
+}
+
 TEST(FlownMission, APlanesSpeedChangesOnTheNextWay) {
   const FlownMission flown = fly({command(16, -2000, 0, 100), command(16, 0, 0, 100),
                                   order(178, {0, 20, -1, 0}), command(16, 0, 2000, 100)},

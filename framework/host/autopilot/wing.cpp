@@ -510,7 +510,8 @@ double Wing::widest_radius(double radius, double z) const {
   const double steady = steady_radius(radius, z);
   const bool is_tight = steady == steady_radius(0, z);
   // Faster than its circle allows, it flies loops beside it.
-  return (is_tight ? 2 : kSwings) * steady;
+  const double carried = true_speed(1, z) / true_airspeed(1, z);  // by the wind
+  return (is_tight ? 2 : kSwings * carried) * steady;
 }
 
 std::array<double, 2> Wing::heights_at(const Destination& to, const Eigen::Vector2d& at) const {
