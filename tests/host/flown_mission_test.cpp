@@ -265,6 +265,11 @@ TEST(FlownMission, WhatAnAutopilotRefusesIsNotFlown) {
   stops.auto_continue = false;
   EXPECT_EQ(rule_of(stops, kPx4Copter), "never_ends");
   EXPECT_EQ(rule_of(stops, kCopter), "none");
+  for (const int number : {16, 17, 19, 21, 22, 82}) {  // QGroundControl leaves the yaw open
+    MissionCommand open = command(number, 150, 0, 20);
+    open.params[3] = NAN;
+    EXPECT_EQ(rule_of(open, kCopter) == "refused", number == 19 || number == 82) << number;
+  }
 }
 // Flown in ArduPilot's simulation.
 TEST(FlownMission, ACopterLeavesItsCircleBesideTheBeginning) {

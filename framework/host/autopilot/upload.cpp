@@ -221,8 +221,9 @@ class UploadCheck {
     const Task task = commands_.task_of(n).task;
     const bool flies = formats::flies_to_position(task);
     if (!is_px4()) {
-      const bool leaves_yaw = command.number == 16 || command.number == 21 ||
-                              command.number == 22 || command.number == 84 || command.number == 85;
+      const bool leaves_yaw = command.number == 16 || command.number == 17 ||
+                              command.number == 21 || command.number == 22 ||
+                              command.number == 84 || command.number == 85;
       for (std::size_t p = 0; p < command.params.size(); ++p) {
         const bool may = (p == 3 && leaves_yaw) || (p == 2 && command.number == 85);
         if (std::isnan(command.params[p]) && !may) {
