@@ -144,6 +144,8 @@ MISSIONS = [
      "differs between versions"),
     ("a turn at the first item", PLANE, [way(1000, 0, 100), way(-500, 0, 100), HOME], (1010, 20, 1060, 110, 0, 2000),
      {}, "clearance"),
+    ("a landing in the air", PLANE, [way(-1200, 0, 100), way(0, 0, 100), to(21, 0, 1200, 12)], None, {},
+     "ends 12.0 m above the ground"),
     ("wind", PLANE, [way(-1500, 0, 100), way(0, 0, 100), way(0, 1500, 100), HOME], (70, 20, 100, 120, 0, 2000),
      {"WIND": 4}, "clearance"),
 ]
@@ -203,6 +205,8 @@ class Dangerous(PlanCase):
                 ("a jump back twice", COPTER, [off(), way(200, 0), way(300, 0), do(177, 2, 2), HOME], None, {}),
                 ("a corner before a landing", PLANE,
                  [way(-1200, 0, 100), way(0, 0, 100), to(21, 0, 1200, 0)], None, {"RTL_AUTOLAND": 1}),
+                ("a landing at a height that is a little off", PLANE,
+                 [way(-1200, 0, 100), way(0, 0, 100), to(21, 0, 1200, 9)], None, {}),
                 ("low, and places within each other's reach", PX4_COPTER, [off(4), way(20, 0, 4), to(21, 20.4, 0, -1)],
                  None, {}),
                 ("a VTOL", VTOL, [UP, way(900, 0), way(900, 900), HOME], None, {}),

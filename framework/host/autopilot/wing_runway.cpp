@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/autopilot/flight.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr double kBesidePath = 8;  // metres beside a path
 constexpr double kRunOut = 200;    // metres beyond a landing's point
 constexpr double kLevelsOff = 15;  // metres above a take-off's height
+constexpr double kOffGround = 10;  // metres of a landing above the ground, as of a home
 
 Eigen::Vector2d ahead(double heading) { return {std::cos(heading), std::sin(heading)}; }
 }  // namespace
@@ -40,6 +42,13 @@ void Wing::land(std::size_t command, const Destination& to) {
   const double foot = std::min(to.low, flight_.ground(to.at));
   const Vec3 touch(to.at.x(), to.at.y(), std::max(to.low, foot));
   part.foot_m = touch.z();
+  const auto ground = flight_.world().ground(to.at.x(), to.at.y());
+  if (const double off = touch.z() - ground.value_or(touch.z()); off > kOffGround) {
+    flight_.remark(Remark::Weight::fails, "landing", command,
+                   "ends " + with_decimals(off, 1) +
+                       " m above the ground: an aeroplane lands at the height of the item",
+                   off, kOffGround);
+  }
   // Its turn onto the slope, which has no least height.
   Leg slope;
   slope.to = to;
