@@ -425,6 +425,18 @@ TEST(FlownMission, ACopterDoesNotSlowDownOnACircleAboveTheGround) {
   EXPECT_GT(outside(flown, 240, 0, sought + 100), 10);
 }
 
+TEST(FlownMission, ACopterSwingsOutOfACircleAboveTheGround) {
+  MissionCommand circle = command(18, 300, 0, 30, 10);
+  circle.params = {1, 0, 20, 0};
+  const FlownMission flown = fly({command(22, 0, 0, 30), circle}, kCopter, {}, rising(0));
+  EXPECT_LT(outside(flown, 326.3, 0, 30), 0.1);
+  EXPECT_GT(outside(flown, 329, 0, 30), 1);
+  const auto is_circle = [](const FlownPart& one) { return one.what == "its circle"; };
+  const auto part = std::find_if(flown.parts.begin(), flown.parts.end(), is_circle);
+  ASSERT_NE(part, flown.parts.end());
+  EXPECT_LT(part->strips.front().from.z(), kHome + 30 - 2);
+}
+
 TEST(FlownMission, APlaneLeavesItsTurnsBelowTheirHeight) {
   MissionCommand circle = command(18, 400, 0, 600);
   circle.params = {1, 0, 60, 0};

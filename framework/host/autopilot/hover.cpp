@@ -13,8 +13,11 @@ constexpr double kTerrainMargin =
     10;  // ArduPilot slows down before it is this far off (WP_TER_MARGIN)
 constexpr double kCornerSpacing = 4;  // metres between the chords of a corner
 constexpr double kAtEdge = 3;         // metres within which it is on a circle
-constexpr double kAtHome = 10;        // metres within which a return only goes up and down
-constexpr double kTouchDown = 10;     // metres above the ground from which it sinks slowly
+// Metres that it swings out of a circle above the ground, and below it: as seen in ArduPilot's
+// simulation (docs/decisions/0006).
+constexpr double kCircleSwing = 2.5;
+constexpr double kAtHome = 10;     // metres within which a return only goes up and down
+constexpr double kTouchDown = 10;  // metres above the ground from which it sinks slowly
 
 /// The height of the ground as ArduPilot's copter follows it: within its rates, with accelerations
 /// of 1 m/s² (WP_ACC_Z).
@@ -359,7 +362,11 @@ void Hover::circle(std::size_t command, const Destination& centre, double radius
   std::array<double, 2> lags{0, 0};
   if (centre.above_ground) {
     lags = lags_on_circle(centre.at, radius, v);
-    flight_.add_disc(centre, inner, radius, -lags[0], lags[1]);
+    for (double& lag : lags) {
+      lag += kCircleSwing;
+    }
+    flight_.add_disc(centre, std::max(inner - kCircleSwing, 0.0), radius + kCircleSwing, -lags[0],
+                     lags[1]);
   } else {
     flight_.add_disc(centre, inner, radius, std::min(low, edge.low), std::max(high, edge.high));
   }
