@@ -226,8 +226,9 @@ class Wing {
     double heading;
     double low;  ///< its height if it seeks the item's slowly, or at once
     double high;
-    int speed;        ///< index
-    double fraction;  ///< of the maximum distance before an item at which it turns
+    int speed;            ///< index
+    double fraction;      ///< of the maximum distance before an item at which it turns
+    bool climbs = false;  ///< also when it is as low as may be
   };
 
   /// Adds the triangle within which the corner at the item before is cut.

@@ -261,6 +261,7 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
   const double roll = max_rate * kTimeStep / (member.speed == 0 ? 0.4 : 1.2);
   double rate = 0;
   const bool is_rough = leg.to.above_ground.has_value();
+  const bool climbed = member.climbs;
   // ArduPilot begins its climb anew where it is above it (ALT_SLOPE_MAXHGT).
   struct Anew {
     double share;
@@ -335,9 +336,10 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
         is_rough
             ? std::max(sought_high, highest_ahead(leg, from, member.at, track, finish - done, v))
             : sought_high;
-    const double slow_climb =
-        seconds < kStarts ? 0 : slow_climb_of(std::abs(rate) > kTurning * max_rate);
+    const bool starts = !climbed && seconds < kStarts;
+    const double slow_climb = starts ? 0 : slow_climb_of(std::abs(rate) > kTurning * max_rate);
     seek_heights(member, sought, highest, dt, slow_climb);
+    member.climbs = member.low > old_low;
     const bool is_level =
         std::abs(member.low - old_low) < 1e-3 && std::abs(member.high - old_high) < 1e-3;
     const bool bends = std::abs(member.heading - drawn_heading) > 0.05;
