@@ -286,6 +286,25 @@ class Formats(unittest.TestCase):
         self.assertIn("where an aeroplane takes off depends on its runway", err)
         self.assertFalse(os.path.exists(os.path.join(self.folder, "plane.plan")))
 
+    def test_zones_with_hours_need_a_speed(self):
+        """That of the file is not read: a slow flight would meet what is closed later."""
+        zone = self.file("z.json", json.dumps({"features": [{
+            "identifier": "Z", "country": "USA", "name": "Z", "type": "COMMON", "restriction": "PROHIBITED", "reason": [],
+            "zoneAuthority": [], "geometry": [{
+                "uomDimensions": "M", "lowerLimit": 0, "lowerVerticalReference": "AMSL", "upperLimit": 9000,
+                "upperVerticalReference": "AMSL", "horizontalProjection": {
+                    "type": "Circle", "center": self.route[-1][:2], "radius": 100}}],
+            "applicability": [{"startDateTime": "2026-05-01T12:00:00Z", "endDateTime": "2026-05-01T23:00:00Z",
+                               "permanent": "NO"}]}]}).encode())
+        options = ("--terrain", TERRAIN, "--airspace", zone, "--start-time", "2026-05-01T10:00:00Z")
+        for to, name in (("wpml", "h.kmz"), ("czml", "h.czml")):
+            path = self.file(name, self.export(to)[0])
+            _, err = altiplan("check", path, *options, code=3)
+            self.assertIn("its own speeds and times are not read: give --speed M/S", err)
+            altiplan("check", path, *options, "--speed", "60", code=0)
+            altiplan("check", path, *options, "--speed", "1", code=1)
+            altiplan("check", path, *options[:4], code=1)
+
     def test_damaged_files(self):
         whole = {"w.kmz": self.export("wpml")[0], "m.mcap": self.export("mcap")[0],
                  "l.csv": self.export("litchi")[0], "c.czml": self.export("czml")[0]}

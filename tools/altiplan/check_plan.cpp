@@ -524,6 +524,10 @@ host::WorldDuring world_during(const PlanCheck& plan, const formats::MissionFile
   if (!plan.start_time || plan.airspace.empty()) {
     return {};
   }
+  if (mission.format == formats::MissionFile::Format::other && !plan.gate.drawn_mps) {
+    throw Error(plan.plan + ": its own speeds and times are not read: give --speed M/S, at which " +
+                "it meets zones with hours, or no --start-time: all of them are closed then");
+  }
   const double start_s = formats::parse_iso_time(*plan.start_time).value();
   return [plan, mission, overrides, start_s](double from_s, double until_s) {
     PlanCheck during = plan;

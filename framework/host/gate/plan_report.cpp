@@ -44,6 +44,8 @@ formats::MissionFile with_commands(formats::MissionFile plan) {
   return plan;
 }
 
+constexpr double kDrawnSpeed = 5;  // m/s, where none is given
+
 /// The drawn lines as a flight.
 FlownMission as_drawn(const formats::MissionFile& plan, const World& world, double speed_mps) {
   using formats::AltitudeFrame;
@@ -143,7 +145,7 @@ class Gate {
 
   std::vector<FlownMission> flights(const formats::MissionFile& plan) const {
     if (is_drawn_) {
-      return {as_drawn(plan, world_, options_.drawn_mps)};
+      return {as_drawn(plan, world_, options_.drawn_mps.value_or(kDrawnSpeed))};
     }
     std::vector<FlownMission> all;
     for (const Autopilot autopilot : autopilots_) {

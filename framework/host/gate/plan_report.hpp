@@ -201,8 +201,8 @@ struct GateOptions {
   std::optional<formats::Firmware> firmware{};
   std::optional<formats::Airframe> airframe{};
   FlightOptions flight{};
-  double drawn_mps = 5;        ///< speed along drawn lines
-  WorldDuring world_during{};  ///< none: it is the same all the time
+  std::optional<double> drawn_mps{};  ///< speed along drawn lines; none: 5
+  WorldDuring world_during{};         ///< none: it is the same all the time
   std::optional<GlideOptions> glide{};
   std::optional<Battery> battery{};
   std::string battery_problem{};  ///< why that of a declared vehicle is not judged; "" if it is
