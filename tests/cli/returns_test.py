@@ -73,6 +73,42 @@ class Returns(PlanCase):
         self.assertEqual(told["verdict"], "pass", told["violations"])
         self.assertIn("passes over a void", told["returns"]["refused"][0]["message"])
 
+    def test_heights_above_a_void(self):
+        """Closed as high ground, it is no ground to be above: nor is a flight above that height over known ground."""
+        lines = (self.folder / "ridge.asc").read_text().splitlines()
+        for row in range(6 + 5, 6 + 25):
+            lines[row] = " ".join("-9999" if 20 <= n < 50 else height for n, height in enumerate(lines[row].split()))
+        (self.folder / "ridge.asc").write_text("\n".join(lines) + "\n")
+
+        def verdicts(frame, height, north, code):
+            east = 1 / METRES / math.cos(math.radians(self.LAT))
+            way = [(22, 0, north), (16, 100, north), (16, 100, north + 200), (16, 0, north + 200)]
+            self.write([item(n + 1, command, self.LAT + y / METRES, self.LON + x * east, height, frame=frame)
+                        for n, (command, x, y) in enumerate(way)], firmwareType=3, vehicleType=2,
+                       plannedHomePosition=[self.LAT + north / METRES, self.LON, 400])
+            out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--json", "--max-agl", "20000", code=code)
+            return json.loads(out)
+
+        for frame, height in ((10, 60), (0, 10100)):
+            told = verdicts(frame, height, 500, 1)
+            self.assertEqual(told["verdict"], "fail")
+            self.assertIn("where the ground is unknown", str(told["violations"]))
+            verdicts(frame, height, -500, 0)
+
+    def test_a_return_that_is_slower_than_the_mission(self):
+        """What closes until it is home counts, not what closes within twice the mission's time."""
+        way = [(22, 0, 0, 60), (178, 20), (16, 100, -700, 260), (16, -1000, -700, 260)]
+        slow = {"WP_SPD": 0.3, "RTL_ALT_M": 15}
+        lon, lat = self.LON - 500 / METRES / math.cos(math.radians(self.LAT)), self.LAT - 350 / METRES
+        for begins, code in (("10:45", 1), ("15:00", 0)):
+            self.zones("z.json", self.around(lon, lat, 0.001), 2000, schedule={"startTime": f"{begins}:00Z",
+                                                                                       "endTime": "23:00:00Z"})
+            told = self.returns(COPTER, way, "--airspace", "z.json", "--start-time", "2026-05-01T10:00:00Z",
+                                parameters=slow, code=code)
+            self.assertEqual(told["verdict"], "pass", told["violations"])
+            self.assertLess(told["time_s"][1], 900)
+            self.assertEqual(told["returns"]["verdict"], "fail" if code else "pass", told["returns"])
+
     def test_a_return_height_that_is_high_enough(self):
         for parameters in ({"RTL_ALT": 23000}, {"RTL_ALT_M": 230}):
             told = self.returns(COPTER, self.beyond(), parameters=parameters, code=0)

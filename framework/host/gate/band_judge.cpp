@@ -7,6 +7,7 @@
 #include "altiplan/ground.hpp"
 #include "altiplan/nearest_place.hpp"
 #include "host/base/words.hpp"
+#include "host/gate/plan_report.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -308,9 +309,39 @@ Vec3 BandJudge::place_of(const Worst& worst, const FlownPart& part) const {
   return worst_place(line.leg.from, line.leg.to, violation, within(line.reach_m).ground);
 }
 
+bool BandJudge::is_above_void(const Strip& strip) const {
+  constexpr double kApart = 10;  // metres between lines, less than between posts
+  const double top = std::max(strip.from_high_m, strip.to_high_m);
+  if (!(top >= kUnknownGround) || !request_.world->has_ground()) {
+    return false;
+  }
+  const Vec3 along(strip.to.x() - strip.from.x(), strip.to.y() - strip.from.y(), 0);
+  const Vec3 ahead = strip.reach_m * (along.norm() > 0 ? Vec3(along.normalized()) : Vec3(1, 0, 0));
+  const Vec3 aside(-ahead.y(), ahead.x(), 0);
+  const int lines = int(std::ceil(strip.reach_m / kApart));
+  for (int n = -lines; n <= lines; ++n) {
+    const Vec3 off = aside * (double(n) / std::max(lines, 1));
+    const Vec3 from = Vec3(strip.from.x(), strip.from.y(), strip.from_high_m) - ahead + off;
+    const Vec3 to = Vec3(strip.to.x(), strip.to.y(), strip.to_high_m) + ahead + off;
+    if (request_.world->ground_gap(from, to) <= top - kUnknownGround) {
+      return true;
+    }
+  }
+  return false;
+}
+
 std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const {
   if (is_valid(part)) {
     return {};
+  }
+  for (const Strip& strip : part.strips) {
+    if (is_above_void(strip)) {
+      Violation violation;
+      violation.constraint = "ground";
+      violation.unit = "m";
+      violation.message = "passes over what is unknown: a void of the elevation model, or none";
+      return {{std::move(violation), strip.from}};
+    }
   }
   std::vector<Worst> worst;
   judge_sky(part, worst);
@@ -348,6 +379,10 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
 
 bool BandJudge::is_valid(const FlownPart& part) const {
   using Ground = FlownPart::Ground;
+  if (std::any_of(part.strips.begin(), part.strips.end(),
+                  [&](const Strip& strip) { return is_above_void(strip); })) {
+    return false;
+  }
   const bool may_block = !sky_.layers().empty() && !part.strips.empty();
   if (may_block && !look_at_suspects(part.strips, [&](const Line& line) {
         return leg_ok(std::nullopt, line.leg, within(line.reach_m).sky);

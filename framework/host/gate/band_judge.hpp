@@ -67,6 +67,8 @@ class BandJudge {
   bool look_at_suspects(std::span<const Strip> strips,
                         const std::function<bool(const Line&)>& look) const;
   bool is_clear(std::span<const Strip> strips) const;
+  /// Voids are closed by ground of ten kilometres: what is flown above that is over nothing known.
+  bool is_above_void(const Strip& strip) const;
   /// Of lines that are not valid those that tell how bad it is, the lowest, the highest and some
   /// between: to find out takes long.
   std::vector<Line> telling(const std::vector<Line>& lines) const;

@@ -257,7 +257,8 @@ void judge_by(const formats::MissionFile& plan, const formats::Autopilot& autopi
               const Mission& world, const GateOptions& options, const std::string& prefix,
               GlideReport& report) {
   const FailsafeReturns flight(plan, autopilot, world.truth, options.flight);
-  const FailsafeWorld judged_in = world_of_failsafes(world, options, flight.mission().time);
+  const FailsafeWorld judged_in =
+      world_of_failsafes(world, options, failsafes_end_s(flight.mission().time));
   const Request request = without_limits(judged_in.request);
   const std::vector<Target> targets = targets_of(plan, *request.world, options.glide->sites);
   GlideJudge judge(plan, flight, request, targets, prefix, report);

@@ -34,6 +34,9 @@ class ReturnJudge {
         finest_(kFinest[returns.mission().autopilot.is_copter() ? 0 : 1]),
         report_(report) {}
 
+  /// The latest time at which a return that was looked at ends, or begins to circle without an end.
+  double end_s() const { return end_s_; }
+
   void judge() {
     const FlownMission& mission = returns_.mission();
     for (const Remark& remark : mission.remarks) {
@@ -108,6 +111,10 @@ class ReturnJudge {
   /// True as well where the return is not judged, which is noted.
   bool is_valid(const Whereabouts& place) {
     FlownMission home = returns_.from(places_->part().command, place);
+    const double begun_s = std::max(places_->part().time.max_s, places_->part().until_s);
+    for (const FlownPart& part : home.parts) {
+      end_s_ = std::max(end_s_, std::isfinite(part.time.max_s) ? begun_s + part.time.max_s : 0);
+    }
     parameters_ = std::move(home.parameters);  // with those of all before it
     bool is_refused = is_too_much(needed_wh(place, home));
     bool is_unjudged = false;
@@ -267,6 +274,7 @@ class ReturnJudge {
   std::vector<Refused> refused_;
   std::vector<Parameters::Used> parameters_;
   std::map<std::array<double, 7>, bool> known_;
+  double end_s_ = 0;
 };
 
 }  // namespace
@@ -278,13 +286,13 @@ void keep_each_once(std::vector<Parameters::Used>& parameters) {
                                [](const auto& a, const auto& b) { return a.name == b.name; }),
                    parameters.end());
 }
-FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& options,
-                                 const TimeSpan& flight) {
-  const double longest_s = 2 * flight.max_s + 600;
+double failsafes_end_s(const TimeSpan& flight) { return 2 * flight.max_s + 600; }
+
+FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& options, double until_s) {
   FailsafeWorld judged{world.request, ""};
   judged.request.world = std::make_shared<const World>(world.truth);
-  if (options.world_during && std::isfinite(longest_s)) {
-    const Mission later = options.world_during(0, longest_s);
+  if (options.world_during && std::isfinite(until_s)) {
+    const Mission later = options.world_during(0, until_s);
     judged.request = later.request;
     judged.request.world = std::make_shared<const World>(later.truth);
   } else if (options.world_during) {
@@ -303,13 +311,23 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
         possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
     for (const formats::Autopilot& autopilot : autopilots) {
       const FailsafeReturns returns(plan, autopilot, world.truth, options.flight);
-      const FailsafeWorld judged = world_of_failsafes(world, options, returns.mission().time);
-      if (!judged.problem.empty()) {
-        report.unjudged.push_back(judged.problem);
+      double until_s = failsafes_end_s(returns.mission().time);
+      for (bool is_all = false; !is_all;) {
+        const FailsafeWorld judged = world_of_failsafes(world, options, until_s);
+        ReturnsReport tried = report;
+        if (!judged.problem.empty()) {
+          tried.unjudged.push_back(judged.problem);
+        }
+        ReturnJudge judge(plan, returns, judged.request, options.battery,
+                          autopilots.size() > 1 ? autopilot.name() + ": " : "", tried);
+        judge.judge();
+        // Returns may be slower than the mission: then once more, with what is closed until then.
+        is_all = !options.world_during || judge.end_s() <= until_s;
+        if (is_all) {
+          report = std::move(tried);
+        }
+        until_s = judge.end_s() + 60;
       }
-      ReturnJudge(plan, returns, judged.request, options.battery,
-                  autopilots.size() > 1 ? autopilot.name() + ": " : "", report)
-          .judge();
     }
   }
   if (!options.battery_problem.empty()) {

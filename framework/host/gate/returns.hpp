@@ -12,13 +12,14 @@ namespace altiplan::host {
 ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& world,
                             const GateOptions& options);
 
-/// What failsafes of a flight are judged in: the world during the flight and as long again.
+/// What failsafes of a flight are judged in: the world until so many seconds after its beginning.
 struct FailsafeWorld {
   Request request;
   std::string problem;  ///< why that is not all, "" if it is
 };
-FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& options,
-                                 const TimeSpan& flight);
+FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& options, double until_s);
+/// Until when failsafes of a flight are looked for at first.
+double failsafes_end_s(const TimeSpan& flight);
 
 /// Sorts parameters by their names.
 void keep_each_once(std::vector<Parameters::Used>& parameters);
