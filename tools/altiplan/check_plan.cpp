@@ -425,9 +425,9 @@ void add_notes(PlanReport& report, const host::Mission& world) {
       nearest = std::min(nearest, layer.environment->clearance(route[i]));
     }
     if (nearest > kFar && layer.environment->ground() == nullptr) {
-      report.notes.insert(
-          report.notes.begin(),
-          layer.id + ": nothing is closed within 50 km of the route: of another region?");
+      report.notes.insert(report.notes.begin(), layer.id +
+                                                    ": nothing is closed within 50 km of the "
+                                                    "route: of another region, or of other hours?");
     }
   }
 }
