@@ -104,15 +104,11 @@ FlownPlaces::FlownPlaces(const FlownPart& part, std::array<double, 2> time_s,
 
 void FlownPlaces::judge(double finest_m, const Judge& is_valid, const Refuse& refuse) const {
   std::vector<const Strip*> strips;
-  Area area;
   for (const Strip& strip : part_->strips) {
-    const Eigen::Vector2d reach(strip.reach_m, strip.reach_m);
-    for (const Vec3& end : {strip.from, strip.to}) {
-      area.extend(Area(end.head<2>() - reach, end.head<2>() + reach));
-    }
     strips.push_back(&strip);
   }
-  judge_area(strips, area, finest_m, is_valid, refuse);
+  const Eigen::Vector2d far(kInfinity, kInfinity);
+  judge_area(strips, Area(-far, far), finest_m, is_valid, refuse);
 }
 
 double FlownPlaces::share_of(const Whereabouts& place, double beyond_m, double unknown) const {

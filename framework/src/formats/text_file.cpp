@@ -75,7 +75,7 @@ class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> 
   }
 
  private:
-  /// False for half a letter beyond U+FFFF, for which RapidJSON takes an escape.
+  /// False if it holds half of a surrogate pair, which RapidJSON accepts as an escape.
   static bool is_unicode(std::string_view text) {
     for (auto at = text.find('\xED'); at != text.npos; at = text.find('\xED', at + 1)) {
       if (at + 1 < text.size() && static_cast<unsigned char>(text[at + 1]) >= 0xA0) {

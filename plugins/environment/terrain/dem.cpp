@@ -81,8 +81,8 @@ bool is_small(const std::vector<fs::path>& files) {
 bool holds_only_statistics(const fs::path& file) {
   constexpr std::array<std::string_view, 5> kKnown{"/", "PAMDataset>", "PAMRasterBand band=\"1\">",
                                                    "Metadata>", "MDI key=\"STATISTICS_"};
-  const std::string text = altiplan::formats::read_file(file.string());
   bool knows_all = file.string().ends_with(".aux.xml");
+  const std::string text = knows_all ? altiplan::formats::read_file(file.string()) : "";
   for (std::size_t at = 0; knows_all && (at = text.find('<', at)) != text.npos;) {
     const std::string_view element = std::string_view(text).substr(++at);
     knows_all = std::any_of(kKnown.begin(), kKnown.end(),
