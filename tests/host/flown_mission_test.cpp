@@ -545,6 +545,21 @@ TEST(FlownMission, APlaneTurnsWiderThanItSeeks) {
   }
 }
 
+TEST(FlownMission, APlaneThatPointsAtItsCircleMayBeBetweenTwoWays) {
+  // Back by 150 degrees onto a circle: the slow join the line, the fast point at the circle.
+  FlightOptions options;
+  options.parameters = {
+      {"AIRSPEED_CRUISE", 22}, {"WP_RADIUS", 60}, {"NAVL1_PERIOD", 15}, {"ROLL_LIMIT_DEG", 65}};
+  MissionCommand turn = command(16, 0, 0, 650);
+  turn.params = {0, 60, 0, 0};
+  MissionCommand circle = command(18, 268, 1028, 650);
+  circle.params = {2, 0, -300, 0};
+  const FlownMission flown = fly({command(16, -379, 846, 650), turn, circle}, kPlane, options);
+  for (const auto& [x, y] : {std::pair(137, 206), {152, 300}, {175, 450}}) {
+    EXPECT_LT(outside(flown, x, y, 650), 0.1) << y;
+  }
+}
+
 TEST(FlownMission, APlaneLevelsOffAboveItsTakeOff) {
   FlightOptions options;
   options.runway_deg = 90;

@@ -348,7 +348,7 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     const Vec3 here(member.at.x(), member.at.y(), std::min({member.low, sought, line}));
     const double here_high = std::max({member.high, highest, line});
     const bool is_settled =
-        has_track_ && std::abs(beside) < kOnTrack && std::abs(from_track) < 0.05;
+        has_track_ && std::abs(cross(track, off)) < kOnTrack && std::abs(from_track) < 0.05;
     passed.push_back({here, here_high, is_settled});
     if (bends || !is_level || (is_rough && undrawn > 15) || undrawn > 200) {
       const double nominal = from.low + share * (leg.to.low - from.low);
