@@ -594,6 +594,29 @@ TEST(FlownMission, WindTakesAPlaneOutWhenItJoinsACircle) {
   EXPECT_LT(outside(flown, 0, 143, 150), 0.1);
 }
 
+TEST(FlownMission, OrderedRatesOfClimbAndDescentCount) {
+  const auto time_of_leg = [](double type, double rate, double height) {
+    const FlownMission flown =
+        fly({command(22, 0, 0, 200), order(178, {type, rate, -1, 0}), command(16, 10, 0, height)},
+            kCopter);
+    const TimeSpan end = part(flown, "").time;
+    const TimeSpan begin = part(flown, "the climb after take-off").time;
+    return TimeSpan{end.min_s - begin.min_s, end.max_s - begin.max_s};
+  };
+  EXPECT_GT(time_of_leg(2, 1, 300).min_s, 90);  // 100 m at 1 m/s, in place of 2.5
+  EXPECT_LT(time_of_leg(2, 5, 300).max_s, 30);
+  EXPECT_GT(time_of_leg(3, 0.5, 100).min_s, 180);
+  EXPECT_LT(time_of_leg(2, 1, 100).max_s, 80);  // its descent is not changed
+  const auto is_judged = [](double rate) {
+    return !has_rule(
+        fly({command(22, 0, 0, 200), order(178, {2, rate, -1, 0}), command(16, 10, 0, 300)},
+            kCopter),
+        "not_judged");
+  };
+  EXPECT_TRUE(is_judged(4));
+  EXPECT_FALSE(is_judged(30));  // no copter of ArduPilot's climbs so fast
+}
+
 TEST(FlownMission, APlanesSpeedChangesOnTheNextWay) {
   const FlownMission flown = fly({command(16, -2000, 0, 100), command(16, 0, 0, 100),
                                   order(178, {0, 20, -1, 0}), command(16, 0, 2000, 100)},

@@ -105,6 +105,8 @@ class Hover {
   double low = 0;  ///< heights above sea level at which it may be
   double high = 0;
   double speed_mps[2];  ///< the slowest and the fastest
+  double climb_mps[2];  ///< on the way to a place
+  double sink_mps[2];
 
   /// Straight up or down.
   void climb(std::size_t command, const char* what, double low_m, double high_m);
@@ -133,8 +135,9 @@ class Hover {
   /// How far below and above it is on a circle above the ground.
   std::array<double, 2> lags_on_circle(const Eigen::Vector2d& centre, double radius,
                                        double v) const;
-  double climb_rate() const;
-  double sink_rate() const;
+  /// The slowest and the fastest, also of what the mission has ordered no rates for.
+  std::array<double, 2> climb_rates() const;
+  std::array<double, 2> sink_rates() const;
   /// Adds what lies within a distance of a leg, level with it.
   void add_beside(const Destination& to, double distance);
   double reach() const { return reach(acceptance_m); }  ///< of the present place

@@ -181,8 +181,9 @@ void Walker::fly_rounds(std::size_t n) {
 }
 
 Walker::Way Walker::way_to(std::size_t n) const {
-  return {double(flight_.before), double(n),      home_.x(),      home_.y(), home_z_,
-          wing_speed_[0],         wing_speed_[1], hover_speed_[1]};
+  return {double(flight_.before), double(n),      home_.x(),       home_.y(),       home_z_,
+          wing_speed_[0],         wing_speed_[1], hover_speed_[0], hover_speed_[1], climb_rate_[0],
+          climb_rate_[1],         sink_rate_[0],  sink_rate_[1]};
 }
 
 void Walker::note_unflown(std::size_t n) {

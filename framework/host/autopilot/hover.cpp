@@ -22,7 +22,7 @@ constexpr double kTouchDown = 10;  // metres above the ground from which it sink
 /// The height of the ground as ArduPilot's copter follows it: within its rates, with accelerations
 /// of 1 m/s² (WP_ACC_Z).
 struct LaggingGround {
-  double z;
+  double z = 0;
   double rate = 0;
 
   double follow(double ground, double seconds, double sink, double climb, double margin) {
@@ -39,6 +39,18 @@ struct LaggingGround {
   }
 };
 
+const char* climb_parameter(formats::Autopilot autopilot) {
+  return autopilot.is_px4()      ? "MPC_Z_V_AUTO_UP"
+         : autopilot.is_copter() ? "WP_SPD_UP"
+                                 : "Q_WP_SPD_UP";
+}
+
+const char* sink_parameter(formats::Autopilot autopilot) {
+  return autopilot.is_px4()      ? "MPC_Z_V_AUTO_DN"
+         : autopilot.is_copter() ? "WP_SPD_DN"
+                                 : "Q_WP_SPD_DN";
+}
+
 Vec3 at_height(const Eigen::Vector2d& at, double z) { return {at.x(), at.y(), z}; }
 }  // namespace
 
@@ -49,20 +61,18 @@ Hover::Hover(Flight& flight, const Eigen::Vector2d& place, double z)
                    : is_copter                 ? flight.parameter("WP_SPD")
                                                : 5;  // Q_WP_SPD
   speed_mps[0] = speed_mps[1] = v;
+  climb_mps[0] = climb_mps[1] = flight.parameter(climb_parameter(flight.autopilot()));
+  sink_mps[0] = sink_mps[1] = flight.parameter(sink_parameter(flight.autopilot()));
 }
 
-double Hover::climb_rate() const {
-  const formats::Autopilot autopilot = flight_.autopilot();
-  return flight_.parameter(autopilot.is_px4()      ? "MPC_Z_V_AUTO_UP"
-                           : autopilot.is_copter() ? "WP_SPD_UP"
-                                                   : "Q_WP_SPD_UP");
+std::array<double, 2> Hover::climb_rates() const {
+  const double own = flight_.parameter(climb_parameter(flight_.autopilot()));
+  return {std::min(own, climb_mps[0]), std::max(own, climb_mps[1])};
 }
 
-double Hover::sink_rate() const {
-  const formats::Autopilot autopilot = flight_.autopilot();
-  return flight_.parameter(autopilot.is_px4()      ? "MPC_Z_V_AUTO_DN"
-                           : autopilot.is_copter() ? "WP_SPD_DN"
-                                                   : "Q_WP_SPD_DN");
+std::array<double, 2> Hover::sink_rates() const {
+  const double own = flight_.parameter(sink_parameter(flight_.autopilot()));
+  return {std::min(own, sink_mps[0]), std::max(own, sink_mps[1])};
 }
 
 double Hover::reach(double acceptance) const {
@@ -86,11 +96,12 @@ void Hover::climb(std::size_t command, const char* what, double low_m, double hi
   }
   const double minimum = std::max({low_m - high, low - high_m, 0.0});
   const double maximum = std::max(high_m - low, high - low_m);
+  const auto [slow_climb, fast_climb] = climb_rates();
   const double first =
-      flight_.autopilot().is_px4() ? flight_.parameter("MPC_TKO_SPEED") : climb_rate();
+      flight_.autopilot().is_px4() ? flight_.parameter("MPC_TKO_SPEED") : slow_climb;
   const bool rises = low_m >= low;
-  const double fastest = rises ? std::max(first, climb_rate()) : sink_rate();
-  const double slowest = rises ? std::min(first, climb_rate()) : sink_rate();
+  const double fastest = rises ? std::max(first, fast_climb) : sink_rates()[1];
+  const double slowest = rises ? std::min(first, slow_climb) : sink_rates()[0];
   flight_.take({minimum / fastest, maximum / slowest + 5});
   low = low_m;
   high = high_m;
@@ -108,7 +119,8 @@ void Hover::return_from(std::size_t command, const Whereabouts& place, double lo
     flight_.begin(command, "the climb of its return").ground =
         FlownPart::Ground::touched_from_above;
     flight_.add_tower(place, std::min(low, low_m), std::max(high, high_m), std::min(reach(), 2.0));
-    flight_.take({climbs_m / climb_rate(), (high_m - low) / climb_rate() + 5});
+    const auto [slowest, fastest] = climb_rates();
+    flight_.take({climbs_m / fastest, (high_m - low) / slowest + 5});
   }
   low = low_m;
   high = high_m;
@@ -194,7 +206,8 @@ void Hover::follow_ground(const Destination& to) {
   const int steps = std::max(1, int(std::ceil(length / kGroundStep)));
   const std::array<double, 2> begun = flight_.known_grounds(at);
   const double starts[] = {low, high};
-  LaggingGround lagging[] = {{begun[0]}, {begun[1]}};  // of the fastest flight
+  // Of the fastest flight, at the slowest rates and at the fastest.
+  LaggingGround lagging[][2] = {{{begun[0]}, {begun[0]}}, {{begun[1]}, {begun[1]}}};
   Vec3 before = at_height(at, low);
   double before_high = high;
   for (int n = 1; n <= steps; ++n) {
@@ -204,13 +217,16 @@ void Hover::follow_ground(const Destination& to) {
     double lowest = kInfinity;
     double highest = -kInfinity;
     for (int ground : {0, 1}) {
-      const double z = lagging[ground].follow(grounds[ground], length / steps / speed_mps[1],
-                                              sink_rate(), climb_rate(), kTerrainMargin);
+      double lag[2];
+      for (int rate : {0, 1}) {
+        lag[rate] = lagging[ground][rate].follow(grounds[ground], length / steps / speed_mps[1],
+                                                 sink_mps[rate], climb_mps[rate], kTerrainMargin);
+      }
       for (const double start : starts) {
         const double before_above = start - begun[ground];
         const double above = before_above + part * (*to.above_ground - before_above);
-        lowest = std::min({lowest, z + above, grounds[ground] + above});
-        highest = std::max({highest, z + above, grounds[ground] + above});
+        lowest = std::min({lowest, lag[0] + above, lag[1] + above, grounds[ground] + above});
+        highest = std::max({highest, lag[0] + above, lag[1] + above, grounds[ground] + above});
       }
     }
     const Vec3 here = at_height(p, lowest);
@@ -239,8 +255,8 @@ void Hover::add_beside(const Destination& to, double distance) {
 
 void Hover::go(std::size_t command, const char* what, const Destination& to) {
   flight_.begin(command, what);
-  const double vertical = std::max(std::max(to.high - low, 0.0) / climb_rate(),
-                                   std::max(high - to.low, 0.0) / sink_rate());
+  const double vertical = std::max(std::max(to.high - low, 0.0) / climb_mps[0],
+                                   std::max(high - to.low, 0.0) / sink_mps[0]);
   const double rise = std::max(to.low - high, 0.0);  // at least
   const double drop = std::max(low - to.high, 0.0);
   const double along = (to.at - at).norm();
@@ -274,7 +290,7 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
   left_.reset();
   const double a = is_px4 ? 3 : 2.5;
   const double both_ends = speed_mps[1] / a + a / (is_px4 ? 4 : 1);  // v / a + a / jerk
-  flight_.take({std::max({along / speed_mps[1], rise / climb_rate(), drop / sink_rate()}) * 0.95,
+  flight_.take({std::max({along / speed_mps[1], rise / climb_mps[1], drop / sink_mps[1]}) * 0.95,
                 std::max(along / speed_mps[0], vertical) + both_ends});
   previous_ = from;
   at = to.at;
@@ -319,20 +335,23 @@ std::array<double, 2> Hover::lags_on_circle(const Eigen::Vector2d& centre, doubl
   constexpr int kSides = 48;
   constexpr int kRounds = 3;  // the first ones bring it into step
   std::array<double, 2> lags{0, 0};
+  const auto sinks = sink_rates();
+  const auto climbs = climb_rates();
   for (const double sense : {-1.0, 1.0}) {
-    LaggingGround lagging[2] = {{0}, {0}};
+    LaggingGround lagging[2][2];
     for (int side = 0; side <= kRounds * kSides; ++side) {
       const double angle = sense * 2 * kPi * side / kSides;
       const auto grounds = flight_.known_grounds(
           centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
       for (int ground : {0, 1}) {
-        if (side == 0) {
-          lagging[ground].z = grounds[ground];
+        for (int rate : {0, 1}) {
+          LaggingGround& one = lagging[ground][rate];
+          one.z = side == 0 ? grounds[ground] : one.z;
+          const double z = one.follow(grounds[ground], 2 * kPi * radius / kSides / v, sinks[rate],
+                                      climbs[rate], kInfinity);
+          lags[0] = std::max(lags[0], grounds[ground] - z);
+          lags[1] = std::max(lags[1], z - grounds[ground]);
         }
-        const double z = lagging[ground].follow(grounds[ground], 2 * kPi * radius / kSides / v,
-                                                sink_rate(), climb_rate(), kInfinity);
-        lags[0] = std::max(lags[0], grounds[ground] - z);
-        lags[1] = std::max(lags[1], z - grounds[ground]);
       }
     }
   }
@@ -412,8 +431,9 @@ void Hover::land(std::size_t command, const char* what) {
                       : flight_.autopilot().is_copter() ? flight_.parameter("LAND_SPD_MS")
                                                         : flight_.parameter("Q_LAND_FINAL_SPD");
   const double slow = is_px4 ? std::min(fast, flight_.parameter("MPC_LAND_CRWL")) : fast;
-  const double above = (height - last) / sink_rate();
-  flight_.take({above + last / 2 / fast, above + last / slow + 5});
+  const auto [slow_sink, fast_sink] = sink_rates();
+  const double above = height - last;
+  flight_.take({above / fast_sink + last / 2 / fast, above / slow_sink + last / slow + 5});
   low = high = foot;
   previous_.reset();
   stops = true;

@@ -78,6 +78,12 @@ void Walker::set_hover_speed() {
     hover_->speed_mps[0] = hover_speed_[0];
     hover_->speed_mps[1] = hover_speed_[1];
   }
+  if (climb_rate_[1] > 0 && hover_) {
+    std::copy_n(climb_rate_, 2, hover_->climb_mps);
+  }
+  if (sink_rate_[1] > 0 && hover_) {
+    std::copy_n(sink_rate_, 2, hover_->sink_mps);
+  }
 }
 
 void Walker::set_wing_speed() {
@@ -101,13 +107,27 @@ void Walker::set_wing_speed() {
   wing_->set_speed(std::min(cruise, planned), std::max(cruise, planned));
 }
 
+void Walker::change_rate(std::size_t n) {
+  constexpr double kFastest = 10;  // the range of WP_SPD_UP and of WP_SPD_DN
+  const double value = commands_[n].params[1];
+  const bool is_climb = commands_[n].params[0] == 2;
+  if (value <= 0 || !(is_climb || commands_[n].params[0] == 3)) {
+    return;
+  }
+  if (value > kFastest) {
+    give_up(n, "a rate of climb or descent above 10 m/s is not judged");
+  }
+  const double rates[2] = {value, value};
+  take_speed(true, rates, is_climb ? climb_rate_ : sink_rate_,
+             parameter(is_climb ? "WP_SPD_UP" : "WP_SPD_DN"));
+  set_hover_speed();
+}
+
 void Walker::change_speed(std::size_t n) {
   const auto& p = commands_[n].params;
   const double value = p[1];
-  if (autopilot_.is_copter() ? !(is_px4() || p[0] == 0 || p[0] == 1) : false) {
-    if (value > 0 && (p[0] == 2 || p[0] == 3)) {
-      give_up(n, "other rates of climb and descent are not judged");
-    }
+  if (autopilot_.is_copter() && !is_px4() && p[0] != 0 && p[0] != 1) {
+    change_rate(n);
     return;
   }
   double speeds[2] = {value, value};
@@ -162,6 +182,10 @@ void Walker::forget_speeds() {
   };
   if (hover_ && autopilot_.is_copter()) {
     widen(hover_speed_, parameter(is_px4() ? "MPC_XY_CRUISE" : "WP_SPD"));
+    if (!is_px4()) {
+      widen(climb_rate_, parameter("WP_SPD_UP"));
+      widen(sink_rate_, parameter("WP_SPD_DN"));
+    }
     set_hover_speed();
   }
   if (!autopilot_.is_copter()) {

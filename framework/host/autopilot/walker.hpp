@@ -113,6 +113,8 @@ class Walker {
   double max_airspeed() const { return parameter(is_px4() ? "FW_AIRSPD_MAX" : "AIRSPEED_MAX"); }
 
   void change_speed(std::size_t n);
+  /// Of climb and descent, by ArduPilot's copter.
+  void change_rate(std::size_t n);
 
   /// What a mission has said of speeds counts no more, or counts still.
   void forget_speeds();
@@ -175,6 +177,8 @@ class Walker {
   bool has_new_home_ = false;
   bool is_pending_ = false;  ///< a condition delays what follows
   double hover_speed_[2] = {0, 0};
+  double climb_rate_[2] = {0, 0};  ///< of a copter, as ordered
+  double sink_rate_[2] = {0, 0};
   double wing_speed_[2] = {0, 0};
   double airspeed_[2] = {0, 0};  ///< of ArduPilot's, which a minimum ground speed raises
   double min_ground_mps_ = 0;
@@ -188,7 +192,7 @@ class Walker {
     std::optional<Wing> wing;
   };
   /// Of which home and at which speeds a way is flown: each is flown anew.
-  using Way = std::array<double, 8>;
+  using Way = std::array<double, 13>;
   Way way_to(std::size_t n) const;
   std::map<Way, Flown> flown_;
   /// What a jump has the vehicle fly again: when the last round ended, of which home and at which
