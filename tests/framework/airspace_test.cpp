@@ -24,7 +24,11 @@ using formats::ZoneLimit;
 using Datum = ZoneLimit::Datum;
 
 Airspace read(const std::string& text, const std::string& file = "file") {
-  return formats::read_airspace(file, text).value();
+  const auto airspace = formats::read_airspace(file, text);
+  if (!airspace) {
+    throw std::runtime_error("no airspace");
+  }
+  return *airspace;
 }
 
 Airspace given(const std::filesystem::path& folder, const std::string& name) {

@@ -63,14 +63,14 @@ int main(int argc, char** argv) {
     const std::string file = argc > 1 ? argv[1] : "";
     const std::string text = formats::read_file(file);
     const auto start = std::chrono::steady_clock::now();
-    auto airspace = formats::read_airspace(file, text);
+    const auto airspace = formats::read_airspace(file, text);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     std::cerr << "read in " << spent.count() << " s\n";
     if (!airspace) {
       throw Error(file + ": is no airspace");
     }
     print(*airspace);
-    answer(formats::AirspaceIndex(std::move(airspace->zones)));
+    answer(formats::AirspaceIndex(airspace->zones));
     return 0;
   } catch (const Error& error) {
     std::cout << "error\t" << error.what() << "\n";

@@ -25,6 +25,9 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 Eigen::Vector2d unit(double heading) { return {std::cos(heading), std::sin(heading)}; }
+Eigen::Vector2d turned_by(const Eigen::Vector2d& by, const Eigen::Vector2d& v) {
+  return {by.x() * v.x() - by.y() * v.y(), by.x() * v.y() + by.y() * v.x()};
+}
 /// True airspeed an indicated one, in the standard atmosphere. Autopilots that measure a warm or a
 /// cold sensor are some percent off.
 double air_ratio(double z) {
@@ -277,6 +280,7 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
   double seconds = 0;
   double undrawn = 0;
   bool was_on_line = false;
+  Eigen::Vector2d velocity = unit(member.heading);  // its direction
   for (int step = 0;; ++step) {
     if (step == max_steps) {
       does_arrive_ = false;
@@ -297,7 +301,6 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     const Eigen::Vector2d along_track =
         is_direct ? Eigen::Vector2d((target - member.at).normalized()) : track;
     const double to_track = std::asin(std::clamp(beside / l1, -0.7071, 0.7071));
-    const Eigen::Vector2d velocity = unit(member.heading);
     const double from_track = std::atan2(cross(along_track, velocity), along_track.dot(velocity));
     // ArduPilot's angle may be more than half a turn, which it takes on the side of its heading.
     double eta = -(from_track + to_track);
@@ -312,7 +315,10 @@ double Wing::fly(Member& member, const Leg& leg, std::vector<Passed>& passed) {
     rate += std::clamp(wanted - rate, -roll, roll);
     const double dt = std::min(kTimeStep, std::max((finish - done) / v, 0.02));
     const double turned = rate * dt;
-    member.at += v * dt * unit(member.heading + turned / 2);
+    const Eigen::Vector2d half = unit(turned / 2);  // a turn by half of it
+    const Eigen::Vector2d middle = turned_by(half, velocity);
+    velocity = turned_by(half, middle);
+    member.at += v * dt * middle;
     member.heading += turned;
     seconds += dt;
     undrawn += v * dt;

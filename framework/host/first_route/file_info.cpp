@@ -132,8 +132,7 @@ FileInfo terrain_info(const fs::path& file, const std::string& crs, Registry& re
   return info;
 }
 
-FileInfo zones_info(const fs::path& file, const std::optional<formats::Airspace>& airspace,
-                    Registry& registry) {
+FileInfo zones_info(const fs::path& file, const formats::Airspace* airspace, Registry& registry) {
   const std::string parameters = zone_parameters(file, {});
   std::unique_ptr<Environment> layer;
   FileInfo info{airspace ? "published airspace" : "zones", {}, {}};
@@ -179,7 +178,7 @@ FileInfo features_info(const fs::path& file, Registry& registry) {
     info.kind = "buildings";
     info.scenario = {"environment:", entry("city", file, "")};
   } else if (!json.features.empty() || !json.surroundings.empty()) {
-    info = zones_info(file, std::nullopt, registry);
+    info = zones_info(file, nullptr, registry);
   }
   std::string list;
   for (const auto& [name, count] : properties) {
@@ -200,7 +199,7 @@ std::optional<FileInfo> text_info(const fs::path& file, Registry& registry) {
     return std::nullopt;  // too large for any of them
   }
   if (const auto airspace = formats::read_airspace(file.string(), text)) {
-    return zones_info(file, airspace, registry);
+    return zones_info(file, airspace.get(), registry);
   }
   const std::string extension = formats::ending_of(file.string());
   if (extension != ".geojson" &&

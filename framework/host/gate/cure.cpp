@@ -76,12 +76,13 @@ Objections objections_to(const std::vector<FlownMission>& flights) {
 }
 }  // namespace
 
-Cures::Cures(const formats::MissionFile& plan, const World& world, Fly fly, const BandJudge& judge)
+Cures::Cures(const formats::MissionFile& plan, const std::vector<FlownMission>& flights,
+             const World& world, Fly fly, const BandJudge& judge)
     : plan_(plan),
       world_(world),
       fly_(std::move(fly)),
       judge_(judge),
-      objections_(objections_to(fly_(plan_))) {}
+      objections_(objections_to(flights)) {}
 
 std::string in_words(const Cure& cure, const std::string& item) {
   constexpr std::array kNames{"north", "north-east", "east", "south-east",

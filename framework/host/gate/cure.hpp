@@ -29,7 +29,9 @@ using Fly = std::function<std::vector<FlownMission>(const formats::MissionFile&)
 /// and the parts that it concerns are judged.
 class Cures {
  public:
-  Cures(const formats::MissionFile& plan, const World& world, Fly fly, const BandJudge& judge);
+  /// `flights` are those of the plan as it is.
+  Cures(const formats::MissionFile& plan, const std::vector<FlownMission>& flights,
+        const World& world, Fly fly, const BandJudge& judge);
 
   /// The least change of one command's height or, where none helps, the least shift toward one of
   /// 16 directions, of at most 1,000 m, with which the way from `before` to `command`, and what

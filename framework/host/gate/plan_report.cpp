@@ -127,14 +127,14 @@ class Gate {
     report.line = flown_line(all.front());
     report.time = time_of(all);
     add_times(report, all);
-    add_cures(report);
+    add_cures(report, all);
     note_autopilots(report);
     note_fence(report);
   }
 
   std::vector<FlownMission> flights() const { return flights(plan_); }
 
-  std::optional<formats::MissionFile> cured() { return cures().cured(); }
+  std::optional<formats::MissionFile> cured() { return cures(flights()).cured(); }
 
  private:
   static Request judged_request(const Mission& world) {
@@ -154,9 +154,9 @@ class Gate {
     return all;
   }
 
-  Cures cures() const {
-    return {plan_, world_, [this](const formats::MissionFile& plan) { return flights(plan); },
-            judge_};
+  Cures cures(const std::vector<FlownMission>& flown) const {
+    return {plan_, flown, world_,
+            [this](const formats::MissionFile& plan) { return flights(plan); }, judge_};
   }
 
   /// "ArduPilot plane: " where several may fly it.
@@ -292,11 +292,8 @@ class Gate {
     }
   }
 
-  void add_cures(PlanReport& report) {
-    if (std::none_of(ways_.begin(), ways_.end(), [](const auto& way) { return way.has_value(); })) {
-      return;  // the search begins with a flight of the whole mission
-    }
-    Cures search = cures();
+  void add_cures(PlanReport& report, const std::vector<FlownMission>& flown) {
+    Cures search = cures(flown);
     std::map<std::pair<std::size_t, std::size_t>, std::optional<Cure>> found;
     for (std::size_t n = 0; n < report.findings.size(); ++n) {
       if (!ways_[n]) {

@@ -131,15 +131,16 @@ void settle(ZoneVolume& volume, const std::string& zone, Doubts& doubts) {
 
 Restriction restriction_of(const std::string& type, const std::string& zone, Doubts& doubts) {
   const std::string word = upper_case(type);
+  if (lists(kKeepOut, word)) {
+    return Restriction::keep_out;
+  }
   if (lists(kAsk, word)) {
     return Restriction::ask;
   }
   if (lists(kInform, word)) {
     return Restriction::inform;
   }
-  if (!lists(kKeepOut, word)) {
-    doubts.add("unknown class '" + printable(type) + "', keep out", zone);
-  }
+  doubts.add("unknown class '" + printable(type) + "', keep out", zone);
   return Restriction::keep_out;
 }
 
@@ -288,8 +289,10 @@ std::optional<Airspace> parse_airspace(const std::string& file, const std::strin
 }
 }  // namespace
 
-std::optional<Airspace> read_airspace(const std::string& file, const std::string& text) {
-  static LastRead<std::optional<Airspace>> last;
-  return last.get(file, text, parse_airspace);
+std::shared_ptr<const Airspace> read_airspace(const std::string& file, const std::string& text) {
+  // Not freed when the program ends, which takes as long as to read a tenth of it.
+  static auto& last = *new LastRead<std::optional<Airspace>>;
+  const auto read = last.get(file, text, parse_airspace);
+  return *read ? std::shared_ptr<const Airspace>(read, &**read) : nullptr;
 }
 }  // namespace altiplan::formats

@@ -107,7 +107,11 @@ bool has_two_readings(const Ring& ring) {
 
 /// Sutherland and Hodgman: the part of the ring on one side of a line. Where the line cuts the ring
 /// more than twice, the parts hang together along it.
-Ring cut(const Ring& ring, std::size_t axis, double limit, double side) {
+Ring cut(Ring ring, std::size_t axis, double limit, double side) {
+  if (std::all_of(ring.begin(), ring.end(),
+                  [&](const Point2& p) { return (p[axis] - limit) * side >= 0; })) {
+    return ring;
+  }
   Ring kept;
   for (std::size_t n = 0; n < ring.size(); ++n) {
     const Point2& p = ring[n];
@@ -210,9 +214,9 @@ class Surroundings {
     for (Point2& p : ring) {
       p[0] += turn;
     }
-    ring = cut(cut(ring, 1, low_[1], 1), 1, high_[1], -1);
+    ring = cut(cut(std::move(ring), 1, low_[1], 1), 1, high_[1], -1);
     return holds_pole_ ? without_poles(in_quarters(ring))
-                       : cut(cut(ring, 0, low_[0], 1), 0, high_[0], -1);
+                       : cut(cut(std::move(ring), 0, low_[0], 1), 0, high_[0], -1);
   }
 
   /// With corners at most a quarter of a turn apart, but along a pole.

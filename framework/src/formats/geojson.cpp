@@ -309,6 +309,6 @@ GeoJson parse_geojson(const std::string& file, const std::string& text) {
 
 GeoJson read_geojson(const std::string& file) {
   static LastRead<GeoJson> last;
-  return last.get(file, read_file(file), parse_geojson);
+  return *last.get(file, read_file(file), parse_geojson);
 }
 }  // namespace altiplan::formats

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -15,11 +16,11 @@ class LastRead {
  public:
   /// `parse(file, text)`, unless that is what was read last.
   template <class Parse>
-  T get(const std::string& file, const std::string& text, const Parse& parse) {
+  std::shared_ptr<const T> get(const std::string& file, const std::string& text, const Parse& parse) {
     constexpr std::size_t kMaxKept = 16 << 20;
     const std::lock_guard lock(mutex_);
     if (!last_ || last_->file != file || last_->text != text) {
-      T value = parse(file, text);
+      auto value = std::make_shared<const T>(parse(file, text));
       if (text.size() > kMaxKept) {
         return value;
       }
@@ -32,7 +33,7 @@ class LastRead {
   struct Last {
     std::string file;
     std::string text;
-    T value;
+    std::shared_ptr<const T> value;
   };
   std::mutex mutex_;
   std::optional<Last> last_;

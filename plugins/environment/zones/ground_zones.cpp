@@ -215,7 +215,7 @@ double GroundZones::over_approximation(double r) const {
 }
 
 Shape GroundZones::drawn(std::size_t zone) const {
-  constexpr int kPoints = 8;
+  constexpr int kPoints = 4;
   const GroundPrism& prism = zones_[zone].limits;
   const Box area = altiplan::bounds(Shape(prism.prism));
   double low = kInfinity;

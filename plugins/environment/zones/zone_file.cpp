@@ -190,15 +190,16 @@ FileZones read_fence(const std::string& file, const FileRules& rules) {
   add_problems(result);
   return result;
 }
-/// None for GeoJSON whose properties the scenario names, and for other kinds of files.
-std::optional<formats::Airspace> read_published(const std::string& file, const FileRules& rules) {
+/// Null for GeoJSON whose properties the scenario names, and for other kinds of files.
+std::shared_ptr<const formats::Airspace> read_published(const std::string& file,
+                                                        const FileRules& rules) {
   const std::string text = formats::read_file(file);
   const bool is_json = text.find_first_of("{<") == text.find_first_not_of("\xEF\xBB\xBF \t\r\n") &&
                        text.find('{') < text.find('<');
   if (is_json && rules.name_properties()) {
-    return std::nullopt;
+    return nullptr;
   }
-  std::optional<formats::Airspace> airspace = formats::read_airspace(file, text);
+  const auto airspace = formats::read_airspace(file, text);
   if (airspace && rules.name_properties()) {
     throw Error(file + ": has no property '" +
                 (rules.floor + rules.ceiling + rules.from + rules.until + rules.type) +
@@ -252,9 +253,9 @@ std::vector<formats::ZonePeriod> time_window(const std::string& from, const std:
 }
 
 FileZones read_zone_file(const std::string& file, const FileRules& rules) {
-  if (auto airspace = read_published(file, rules)) {
+  if (const auto airspace = read_published(file, rules)) {
     FileZones result;
-    result.airspace = std::move(airspace);
+    result.airspace = airspace;
     return result;
   }
   return formats::is_mission_file(file) ? read_fence(file, rules) : read_features(file, rules);

@@ -37,8 +37,9 @@ struct FileRules {
 
 /// Zones of a file, of one volume each.
 struct FileZones {
-  std::optional<formats::Airspace> airspace;  ///< of a file of that kind, which has no other zones
-  std::vector<formats::Zone> zones;           ///< to keep out of or in
+  std::shared_ptr<const formats::Airspace>
+      airspace;                      ///< of a file of that kind, which has no other zones
+  std::vector<formats::Zone> zones;  ///< to keep out of or in
   std::vector<std::string> notes;
 };
 

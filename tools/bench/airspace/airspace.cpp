@@ -43,7 +43,7 @@ std::vector<Question> questions(const std::vector<formats::Zone>& zones, std::si
 Json measure(const std::string& file, std::size_t count) {
   const std::string text = formats::read_file(file);
   double before = thread_s();
-  const std::optional<formats::Airspace> airspace = formats::read_airspace(file, text);
+  const auto airspace = formats::read_airspace(file, text);
   if (!airspace) {
     throw Error(file + ": expected published airspace");
   }

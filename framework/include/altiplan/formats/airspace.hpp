@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,10 +21,10 @@ struct Airspace {
 };
 
 /// Reads ED-269, ED-318, AIXM 5.1, OpenAir or a UAS facility map of the FAA, which its content
-/// tells; none if it is of another kind. `file` is for messages. Throws Error, naming file and line
+/// tells; null if it is of another kind. `file` is for messages. Throws Error, naming file and line
 /// or feature, if it is damaged so that the place of a zone is unknown.
-ALTIPLAN_API std::optional<Airspace> read_airspace(const std::string& file,
-                                                   const std::string& text);
+ALTIPLAN_API std::shared_ptr<const Airspace> read_airspace(const std::string& file,
+                                                           const std::string& text);
 
 /// "ED-269"
 ALTIPLAN_API std::string format_name(Airspace::Format format);
