@@ -580,6 +580,17 @@ TEST(FlownMission, APlaneTakesOffAnywhereWithinTenDegrees) {
   }
 }
 
+TEST(FlownMission, AClimbBeyondAHundredKilometresIsNotJudged) {
+  FlightOptions options;
+  options.runway_deg = 90;
+  const auto climb = [&](double height) {
+    return fly({command(22, 0, 0, height), command(16, 1600, 0, height)}, kPlane, options);
+  };
+  EXPECT_FALSE(has_rule(climb(5000), "not_judged"));
+  EXPECT_TRUE(has_rule(climb(30'000), "not_judged"));
+  EXPECT_LT(part(climb(30'000), "the climb after take-off").strips.size(), 10U);
+}
+
 // ArduPilot's aeroplane flew 141 m from the centre of such a circle.
 TEST(FlownMission, WindTakesAPlaneOutWhenItJoinsACircle) {
   FlightOptions options;

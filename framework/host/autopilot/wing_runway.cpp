@@ -10,10 +10,11 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kBesidePath = 8;  // metres beside a path
-constexpr double kRunOut = 200;    // metres beyond a landing's point
-constexpr double kLevelsOff = 15;  // metres above a take-off's height
-constexpr double kOffGround = 10;  // metres of a landing above the ground, as of a home
+constexpr double kBesidePath = 8;    // metres beside a path
+constexpr double kRunOut = 200;      // metres beyond a landing's point
+constexpr double kLevelsOff = 15;    // metres above a take-off's height
+constexpr double kMaxClimb = 100e3;  // metres that a take-off may lead ahead
+constexpr double kOffGround = 10;    // metres of a landing above the ground, as of a home
 
 Eigen::Vector2d ahead(double heading) { return {std::cos(heading), std::sin(heading)}; }
 }  // namespace
@@ -104,8 +105,16 @@ void Wing::take_off(std::size_t command, const Eigen::Vector2d& from, double hea
       against * (is_px4 ? flight_.parameter("FW_T_CLMB_MAX") / speed_mps[0]
                         : std::tan(radians(flight_.parameter("PTCH_LIM_MAX_DEG"))));
   const double shallow = with * (is_px4 ? 2 / speed_mps[1] : std::tan(radians(4)));
-  const int gaps = int(std::ceil(spread * height / shallow / kBesidePath));  // side by side
-  for (int ray = 0; ray <= gaps; ++ray) {
+  const bool is_judged = height / shallow <= kMaxClimb;
+  if (!is_judged) {
+    flight_.remark(Remark::Weight::not_judged, "not_judged", command,
+                   "a climb after take-off that may lead " +
+                       std::to_string(std::lround(height / shallow / 1000)) +
+                       " km ahead is not judged: give it a lower altitude, and climb on by "
+                       "waypoints or a circle");
+  }
+  const int gaps = is_judged ? int(std::ceil(spread * height / shallow / kBesidePath)) : 0;
+  for (int ray = 0; ray <= gaps; ++ray) {  // side by side
     const double course = heading + spread * (2.0 * ray / std::max(gaps, 1) - 1);
     const Vec3 near(from.x() + height / steep * std::cos(course),
                     from.y() + height / steep * std::sin(course), foot + shallow * height / steep);
