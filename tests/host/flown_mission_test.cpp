@@ -516,6 +516,25 @@ TEST(FlownMission, ArduPilotsGroundIsInterpolatedInAGrid) {
   EXPECT_GT(outside(flown, Peak::kAt, 0, 50), 5);
 }
 
+// Flown over the Alps: 3 m outside of the band.
+TEST(FlownMission, ArduPilotReadsItsGridBesideThePlace) {
+  // 65 km east of a whole degree, home in the north of a block and the item in the next.
+  const Frame frame = Frame::geographic(8.85, 46.646, 46.646);
+  const World world = rising(0.5).with_frame(frame);
+  formats::MissionFile plan;
+  plan.home = {8.85, 46.646, kHome, formats::AltitudeFrame::sea};
+  for (const double north : {0.0, 300.0}) {
+    MissionCommand item = command(north == 0 ? 22 : 16, 0, 0, 60, 10);
+    const auto [lon, lat] = frame.to_lonlat(0, north);
+    item.lon = lon;
+    item.lat = lat;
+    plan.commands.push_back(item);
+  }
+  const FlownMission flown = fly_mission(plan, kCopter, world, {});
+  EXPECT_LT(outside(flown, 0, 300, 64), 0.1);
+  EXPECT_GT(outside(flown, 0, 300, 72), 2);
+}
+
 TEST(FlownMission, APlanesCircleGrowsWithItsHeight) {
   const auto radius_at = [](double height) {
     MissionCommand circle = command(18, 1500, 0, height);

@@ -63,8 +63,9 @@ std::array<double, 2> Flight::known_grounds(const Eigen::Vector2d& at) const {
   return {own, grid_ground(at) + *grid_shift_};
 }
 
-// AP_Terrain::calculate_grid_info and height_amsl: blocks of 24 by 28 cells, counted from whole
-// degrees, in each of which the nodes lie equally far apart in metres.
+// AP_Terrain::calculate_grid_info and height_amsl. Nodes lie in blocks of 24 by 28 cells, equally far
+// apart in metres from the block's corner; places count in metres from whole degrees. Since degrees
+// of longitude get shorter, a place is read from nodes up to 11 m west or east of it.
 double Flight::grid_ground(const Eigen::Vector2d& at) const {
   constexpr double kMetres = 111318.84502145034;  // a degree
   constexpr int kNorth = 24;
@@ -78,14 +79,14 @@ double Flight::grid_ground(const Eigen::Vector2d& at) const {
   };
   const double lat0 = std::floor(lat);
   const double lon0 = std::floor(lon);
-  const int row = int((lat - lat0) * kMetres / spacing) / kNorth;
-  const int column = int((lon - lon0) * kMetres * shrink(lat, lat0) / spacing) / kEast;
+  const double north = (lat - lat0) * kMetres / spacing;
+  const double east = (lon - lon0) * kMetres * shrink(lat, lat0) / spacing;
+  const int row = int(north) / kNorth;
+  const int column = int(east) / kEast;
   const std::pair<double, double> block = offset(lat0, lon0, row * kNorth, column * kEast);
-  const double north = (lat - block.first) * kMetres / spacing;
-  const double east = (lon - block.second) * kMetres * shrink(lat, block.first) / spacing;
   const auto node = [&](int n, int e) {
-    const int i = int(std::floor(north)) + n;
-    const int j = int(std::floor(east)) + e;
+    const int i = int(north) % kNorth + n;
+    const int j = int(east) % kEast + e;
     const auto [found, is_new] = grid_.try_emplace({int(lat0), int(lon0), row, column, i, j}, 0);
     if (is_new) {
       const auto [to_lat, to_lon] = offset(block.first, block.second, i, j);
