@@ -241,7 +241,7 @@ class Survey(unittest.TestCase):
         calm = self.survey(area, TERRAIN)
         shutil.rmtree(self.folder / "out")
         windy = self.survey(area, TERRAIN, "--wind", "6,270")
-        self.assertGreater(windy["planned_s"], 1.05 * calm["planned_s"])  # there and back again
+        self.assertAlmostEqual(windy["planned_s"], calm["planned_s"], 3)  # its speed is that over the ground
 
     def test_along_a_line(self):
         corners = [(0, 0), (400, 100), (700, -150)]

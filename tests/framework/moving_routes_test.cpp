@@ -132,10 +132,17 @@ TEST(MovingRoutes, TurnsAreDecidedWherePointsOfThemWould) {
 }
 
 TEST(MovingRoutes, WindMovesTheTimes) {
-  // With a tail wind of 10 m/s the vehicle is beyond the crossing before the ball is there.
+  // With a tail wind of 10 m/s an aeroplane is beyond the crossing before the ball is there.
   Request request = among({crossing(true)});
+  const Route route{{0, 0, 50}, {200, 0, 50}};
   request.wind.layers = {{-kInfinity, {10, 0, 0}}};
-  EXPECT_TRUE(check({{0, 0, 50}, {200, 0, 50}}, request).ok());
+  EXPECT_FALSE(check(route, request).ok()) << "a copter keeps its speed over the ground";
+  Wing wing;
+  wing.airspeed_mps = 10;
+  request.vehicle.wing = wing;
+  EXPECT_TRUE(check(route, request).ok());
+  request.wind = {};
+  EXPECT_FALSE(check(route, request).ok());
 }
 
 /// Cuts to its ends.

@@ -178,10 +178,10 @@ TEST(Energy, ThePointOfNoReturnLeavesEnoughForTheStraightWayBack) {
   EXPECT_DOUBLE_EQ(*lasts(25.1), 100) << "the end of the flight";
   request.vehicle.sink_mps = 1;
   EXPECT_NEAR(*lasts(12.5), 50, 1) << "the start is as high";
-  request.wind.layers = {{-kInfinity, {-5, 0, 0}}};  // 5 m/s out; behind, it counts for nothing
-  EXPECT_NEAR(*lasts(12.5), 100 / 1.5, 1);
-  request.wind.layers = {{-kInfinity, {5, 0, 0}}};  // 15 m/s out, 5 m/s back
-  EXPECT_NEAR(*lasts(12.5), 25, 1);
+  request.wind.layers = {{-kInfinity, {-5, 0, 0}}};  // behind, it counts for nothing
+  EXPECT_NEAR(*lasts(12.5), 50, 1);
+  request.wind.layers = {{-kInfinity, {5, 0, 0}}};  // 10 m/s out, 5 m/s back
+  EXPECT_NEAR(*lasts(12.5), 100 / 3.0, 1);
 }
 
 TEST(Energy, StandardAtmosphere) {

@@ -599,6 +599,46 @@ TEST(FlownMission, APlaneTakesOffAnywhereWithinTenDegrees) {
   }
 }
 
+TEST(FlownMission, WhatFollowsAnEndlessItemIsFlown) {
+  const std::vector<MissionCommand> landing = {command(16, 900, 0, 60), command(16, 500, 0, 40),
+                                               command(21, 0, 0, 0)};
+  for (const int endless : {17, 177}) {
+    std::vector<MissionCommand> mission = {command(16, -900, 0, 100), command(16, 900, 900, 100)};
+    mission.push_back(endless == 17 ? command(17, 0, 900, 100) : order(177, {1, -1, 0, 0}));
+    mission.insert(mission.end(), landing.begin(), landing.end());
+    for (const Autopilot& autopilot : {kPlane, kCopter}) {
+      const FlownMission flown = fly(mission, autopilot);
+      EXPECT_TRUE(has_rule(flown, "never_ends")) << endless;
+      EXPECT_FALSE(has_rule(flown, "not_flown")) << endless;
+      EXPECT_EQ(flown.parts[flown.parts.size() - 2].command, 5U) << endless;
+      EXPECT_LT(outside(flown, 500, 0, 40), 10) << endless;
+    }
+  }
+}
+
+TEST(FlownMission, AnAeroplanesLandingIsAsFlatAsItSinks) {
+  const auto land = [](double before, double height) {
+    return fly(
+        {command(16, -900, 0, height), command(16, -before, 0, height), command(21, 0, 0, 0)},
+        kPlane);
+  };
+  EXPECT_FALSE(has_rule(land(600, 60), "sink_rate"));
+  EXPECT_TRUE(has_rule(land(100, 100), "sink_rate"));
+  EXPECT_TRUE(has_rule(land(20, 300), "sink_rate"));
+}
+
+TEST(FlownMission, AnIgnoredSpeedIsSaid) {
+  const auto order_of = [](double type, double speed) {
+    return fly(
+        {command(16, -900, 0, 100), order(178, {type, speed, -1, 0}), command(16, 0, 0, 100)},
+        kPlane);
+  };
+  EXPECT_TRUE(has_rule(order_of(0, 60), "speed"));
+  EXPECT_TRUE(has_rule(order_of(2, 5), "speed"));
+  EXPECT_FALSE(has_rule(order_of(0, 15), "speed"));
+  EXPECT_FALSE(has_rule(order_of(0, -2), "speed"));
+}
+
 TEST(FlownMission, AClimbBeyondAHundredKilometresIsNotJudged) {
   FlightOptions options;
   options.runway_deg = 90;

@@ -135,10 +135,13 @@ void Walker::walk() {
         return;
       }
       if (!next) {
-        flight_.remark(Weight::note, "never_ends", n, "jumps back for ever: the flight has no end");
         flight_.take({0, kInfinity});
         flight_.fly_again(commands_.target_of(n).value(), n);
-        return;
+        if (!goes_on_when_told(n, "jumps back for ever")) {
+          return;
+        }
+        ++n;
+        continue;
       }
       if (++jumps > kMaxJumps) {
         give_up(n, kJumpsAlone);
@@ -152,7 +155,7 @@ void Walker::walk() {
     ++n;
   }
   if (ends && n < commands_.size()) {
-    note_unflown(n);
+    note_unflown(n - 1);
   }
   if (!ends && n == commands_.size() && has_flown_) {
     finish();
@@ -186,17 +189,42 @@ Walker::Way Walker::way_to(std::size_t n) const {
           climb_rate_[1],         sink_rate_[0],  sink_rate_[1]};
 }
 
-void Walker::note_unflown(std::size_t n) {
-  for (; n < commands_.size(); ++n) {
+std::vector<std::size_t> Walker::positions_after(std::size_t n) const {
+  std::vector<std::size_t> all;
+  for (++n; n < commands_.size(); ++n) {
     if (formats::flies_to_position(task_of(n))) {
-      if (has_flown_) {
-        flight_.remark(Weight::note, "not_flown", n, "is not flown: the flight ends before it");
-      } else {
-        give_up(n, "is not flown: the mission ends before anything is");
-      }
-      return;
+      all.push_back(n);
     }
   }
+  return all;
+}
+
+void Walker::note_unflown(std::size_t n) {
+  const std::vector<std::size_t> unflown = positions_after(n);
+  if (unflown.empty()) {
+    return;
+  }
+  if (!has_flown_) {
+    give_up(unflown.front(), "is not flown: the mission ends before anything is");
+    return;
+  }
+  const std::string last = name_of_command(commands_[unflown.back()]);
+  flight_.remark(
+      Weight::note, "not_flown", unflown.front(),
+      unflown.size() == 1
+          ? "is not flown, and not judged: the flight ends before it"
+          : "from here to " + last + " nothing is flown, nor judged: the flight ends before it");
+}
+
+bool Walker::goes_on_when_told(std::size_t n, const std::string& what) {
+  bool leads_on = !positions_after(n).empty();
+  for (std::size_t i = n + 1; i < commands_.size(); ++i) {
+    leads_on = leads_on || task_of(i) == Task::return_home;
+  }
+  flight_.remark(Weight::note, "never_ends", n,
+                 what + ": the flight has no end" +
+                     (leads_on ? ", and what follows is judged as if it were told to go on" : ""));
+  return leads_on;
 }
 
 bool Walker::carry_out(std::size_t n) {

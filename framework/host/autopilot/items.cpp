@@ -105,7 +105,7 @@ bool Walker::fly_hover(std::size_t n) {
   }
   if (task == Task::loiter_forever) {
     flight_.take({0, kInfinity});
-    return true;
+    return !goes_on_when_told(n, "stays here for ever");
   }
   return false;
 }
@@ -258,7 +258,7 @@ bool Walker::circle_wing(std::size_t n, const Destination& to) {
   wing_->circle(n, "its circle", to, radius, clockwise, stay, leg.next, command.params[3] == 1);
   if (task == Task::loiter_forever) {
     flight_.take({0, kInfinity});
-    return true;
+    return !goes_on_when_told(n, "stays here for ever");
   }
   return false;
 }

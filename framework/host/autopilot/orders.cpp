@@ -156,6 +156,13 @@ void Walker::change_speed(std::size_t n) {
     }
   } else {
     counts = p[0] == 0 && (value == -2 || (value >= min_airspeed() && value <= max_airspeed()));
+    if (!counts && value > 0) {
+      flight_.remark(Weight::note, "speed", n,
+                     p[0] == 0 ? "is ignored: it is not from AIRSPEED_MIN to AIRSPEED_MAX, " +
+                                     with_digits(min_airspeed(), 3) + " to " +
+                                     with_digits(max_airspeed(), 3) + " m/s"
+                               : "is ignored by aeroplanes");
+    }
     speeds[0] = speeds[1] = value == -2 ? cruise : value;
     take_speed(counts, speeds, airspeed_, cruise);
   }

@@ -68,7 +68,13 @@ class Walker {
 
   void walk();
 
+  /// Those of the commands after that one that lead to a position.
+  std::vector<std::size_t> positions_after(std::size_t n) const;
+  /// Says what after that command is not flown.
   void note_unflown(std::size_t n);
+  /// What lasts for ever ends when the pilot or the ground station says so, and a failsafe may lead
+  /// to a landing behind it: true if anything follows.
+  bool goes_on_when_told(std::size_t n, const std::string& what);
 
   /// Reports that what follows is not judged; true: the flight ends here.
   bool give_up(std::size_t n, const std::string& why);

@@ -69,6 +69,18 @@ void Wing::land(std::size_t command, const Destination& to) {
                    "how the aeroplane gets to its landing is not judged: it circles the point");
   }
   const double length = std::max((to.at - begin).norm(), 1.0);
+  const double sinks = begin_high - touch.z();
+  const double fast = true_speed(1, touch.z());
+  const double needed = sinks / length * fast;
+  if (!flight_.autopilot().is_px4() && needed > sink_mps_) {
+    flight_.remark(Remark::Weight::fails, "sink_rate", command,
+                   "the landing sinks faster than the autopilot's limit (TECS_SINK_MAX), and ends "
+                   "beyond its point: begin it at least " +
+                       with_decimals(std::ceil(sinks * fast / sink_mps_), 0) +
+                       " m before, or at most " +
+                       with_decimals(std::floor(length * sink_mps_ / fast), 0) + " m above it",
+                   needed, sink_mps_);
+  }
   const Aim aim = lowest_aim(begin_high - touch.z(), length, touch.z());
   const Eigen::Vector2d aimed = to.at + aim.before_m / length * (begin - to.at);
   const double drawn = touch.z() + aim.before_m / length * (begin_high - touch.z());

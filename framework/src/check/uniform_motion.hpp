@@ -37,19 +37,9 @@ void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, co
   }
 }
 
-/// Seconds in which a vehicle that hovers, at that speed through the air in any direction, goes
-/// straight on by `way`: the root of |way - t wind| = t airspeed. Infinite where the wind is too
-/// strong.
-inline double time_against(const Vec3& way, double airspeed, const Vec3& wind) {
-  const double with = way.dot(wind);
-  const double square =
-      with * with + (airspeed * airspeed - wind.squaredNorm()) * way.squaredNorm();
-  const double closing = with + std::sqrt(std::max(square, 0.0));
-  return way.isZero(0) ? 0 : square < 0 || closing <= 0 ? kInfinity : way.squaredNorm() / closing;
-}
-
 /// Calls `use(a, t0, b, t1)` for each part of a straight leg, or of a wait, that begins at `time_s`
-/// and is in uniform straight motion; until it returns false. False if it did.
+/// and is in uniform straight motion; until it returns false. False if it did. An aeroplane keeps
+/// its airspeed, a vehicle that hovers its speed over the ground, in any wind, as autopilots do.
 template <class Use>
 bool in_uniform_motion(const Leg& leg, double time_s, const Request& request, const Use& use) {
   if (leg.waits()) {
@@ -63,17 +53,14 @@ bool in_uniform_motion(const Leg& leg, double time_s, const Request& request, co
                              end == 1 ? leg.to : Vec3(leg.from + end * way), t1);
     time_s = t1;
   };
-  if (request.vehicle.wing || !request.wind.is_calm()) {
+  if (request.vehicle.wing) {
     double begin = 0;
     std::vector<double> ends = request.wind.crossings(leg.from.z(), leg.to.z());
     ends.push_back(1);
     for (const double end : ends) {
       const Vec3 from = leg.from + begin * way;
       const Vec3 to = leg.from + end * way;
-      const double seconds = request.vehicle.wing
-                                 ? flight_time(from, to, request.air_speed(), request.wind)
-                                 : time_against(to - from, request.air_speed(),
-                                                request.wind.at((from.z() + to.z()) / 2));
+      const double seconds = flight_time(from, to, request.air_speed(), request.wind);
       part(begin, end, std::max(seconds, request.vehicle.climb_time((end - begin) * way.z())));
       begin = end;
     }

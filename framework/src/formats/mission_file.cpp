@@ -102,10 +102,11 @@ MissionFile read_json_mission(const std::string& file, const std::string& text) 
   }
 }
 
+}  // namespace
+
 bool is_nowhere(double lon, double lat) {
   return (lon == 0 && lat == 0) || (std::isnan(lon) && std::isnan(lat));
 }
-}  // namespace
 
 void expect_position(double lon, double lat) {
   if (std::isfinite(lon) && std::isfinite(lat) && std::abs(lon) <= 180 && std::abs(lat) <= 90) {

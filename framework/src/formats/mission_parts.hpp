@@ -29,6 +29,8 @@ MissionFile read_gpx(const pugi::xml_node& root, const std::string& file, const 
 void expect_position(double lon, double lat);
 /// Throws Error if the height is not finite or beyond 100 km.
 void expect_altitude(double altitude_m);
+/// True for 0, 0, which ground stations write where they know no place, and for no numbers.
+bool is_nowhere(double lon, double lat);
 /// The altitude frame of a global MAV_FRAME number; throws Error for others.
 AltitudeFrame frame_of(int mav_frame);
 /// Drops repeated points; throws Error for an invalid polygon.

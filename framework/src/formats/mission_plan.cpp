@@ -167,8 +167,11 @@ MissionFile read_plan(const Node& root) {
     home.wrong("[latitude, longitude, altitude]");
   }
   const Point2 at = home.place_on_earth();
-  mission.home = {at[0], at[1], home.at(2).number(), AltitudeFrame::sea};
-  home.told([&] { expect_altitude(mission.home->altitude_m); });
+  const double altitude_m = home.at(2).number();
+  home.told([&] { expect_altitude(altitude_m); });
+  if (!is_nowhere(at[0], at[1])) {
+    mission.home = {at[0], at[1], altitude_m, AltitudeFrame::sea};
+  }
   read_items(body.at("items"), mission);
   read_fence(root.at("geoFence"), mission);
   read_rally_points(root.at("rallyPoints"), mission);

@@ -229,7 +229,9 @@ MissionFile read_waypoints(const std::string& file, const std::string& text) {
     } else if (number == 0 && is_home(row)) {
       expect_position(row.lon(), row.lat());
       expect_altitude(row.altitude());
-      mission.home = {row.lon(), row.lat(), row.altitude(), AltitudeFrame::sea};
+      if (!is_nowhere(row.lon(), row.lat())) {
+        mission.home = {row.lon(), row.lat(), row.altitude(), AltitudeFrame::sea};
+      }
     } else {
       const auto& of = row.fields;
       commands.add({row.command(),

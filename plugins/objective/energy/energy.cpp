@@ -49,6 +49,9 @@ class FlightEnergy final : public Objective {
   }
 
  private:
+  /// Of a copter in wind, times its fastest speed over the ground.
+  static constexpr double kAirspeeds = 3;
+
   double do_cost(const Leg& leg, double, const Request& request) const override {
     return leg_energy(leg, request, *power_);
   }
@@ -76,22 +79,29 @@ class FlightEnergy final : public Objective {
     return mps;
   }
 
-  static double least_seconds(const Vec3& way, const Request& request) {
-    const double climbs_s = request.vehicle.climb_time(way.z());
-    if (!request.vehicle.wing && request.wind.is_calm()) {
-      return std::max(way.norm() / fastest(request.vehicle), climbs_s);
-    }
+  static double strongest_wind(const Request& request) {
     double wind = 0;
     for (const Wind::Layer& layer : request.wind.layers) {
       wind = std::max(wind, layer.velocity.norm());
     }
+    return wind;
+  }
+
+  static double least_seconds(const Vec3& way, const Request& request) {
+    const double climbs_s = request.vehicle.climb_time(way.z());
+    const double wind = strongest_wind(request);
+    if (!request.vehicle.wing) {
+      const double fast = fastest(request.vehicle);
+      return wind > (kAirspeeds - 1) * fast ? 0 : std::max(way.norm() / fast, climbs_s);
+    }
     return std::max(way.head<2>().norm() / (request.air_speed() + wind), climbs_s);
   }
 
-  /// Of flights at any speed up to the fastest that climb and sink as fast as they may: the least
-  /// of a fine grid of them, less what lies between. 0 where a rate is not limited.
+  /// Of flights at any airspeed that climb and sink as fast as they may: the least of a fine grid
+  /// of them, less what lies between. 0 where a rate is not limited.
   static double least_watts(const Vehicle& vehicle, const Power& power) {
     constexpr int kSteps = 64;
+    const int fastest_air = vehicle.wing ? kSteps : int(kAirspeeds * kSteps);
     constexpr double kBetween = 0.98;
     const double fast = fastest(vehicle);
     const double up = vehicle.wing ? fast * std::tan(vehicle.wing->climb) : vehicle.climb_mps;
@@ -100,7 +110,7 @@ class FlightEnergy final : public Objective {
       return 0;
     }
     double minimum = kInfinity;
-    for (int i = vehicle.wing ? kSteps : 0; i <= kSteps; ++i) {
+    for (int i = vehicle.wing ? kSteps : 0; i <= fastest_air; ++i) {
       for (int k = 0; k <= kSteps; ++k) {
         for (const double height_m : {0.0, 9000.0}) {
           const double climb = -down + (up + down) * k / kSteps;

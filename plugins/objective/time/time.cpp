@@ -31,7 +31,7 @@ class FlightTime final : public Objective {
 
  private:
   double do_cost(const Leg& leg, double, const Request& request) const override {
-    if (is_by_airspeed(request)) {
+    if (request.vehicle.wing) {
       // Along a turn the rate of climb is constant, along a straight leg in each layer of wind.
       return leg.turns() ? leg_duration(leg, request) * share_above(leg.from.z(), leg.to.z())
                          : above(leg.from, leg.to, request);
@@ -73,15 +73,13 @@ class FlightTime final : public Objective {
   /// As fast as ever possible: straight, or down to the height where no time counts and up again.
   double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
     const Vec3 way = to - from;
-    if (is_by_airspeed(request)) {
-      // An aeroplane's is level: going down takes it no time.
-      const double length = request.vehicle.wing ? way.head<2>().norm() : way.norm();
+    if (request.vehicle.wing) {  // by its airspeed, which is level: going down takes it no time
       double wind = 0;
       for (const Wind::Layer& layer : request.wind.layers) {
         wind = std::max(wind, layer.velocity.norm());
       }
       return params_.above_m ? 0
-                             : std::max(length / (request.air_speed() + wind),
+                             : std::max(way.head<2>().norm() / (request.air_speed() + wind),
                                         request.vehicle.climb_time(way.z()));
     }
     const Vehicle& vehicle = request.vehicle;
@@ -99,11 +97,6 @@ class FlightTime final : public Objective {
   std::string do_unit() const override { return "s"; }
   /// Near obstacles, and in layers of wind, the speed depends on the place.
   Traits do_traits() const override { return {.place = true, .heading = true}; }
-
-  /// As leg_duration has it.
-  static bool is_by_airspeed(const Request& request) {
-    return request.vehicle.wing || !request.wind.is_calm();
-  }
 
   /// Seconds of a straight leg, or of its part above the height.
   double above(const Vec3& a, const Vec3& b, const Request& request) const {

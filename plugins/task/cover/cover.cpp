@@ -214,9 +214,8 @@ class Cover final : public Task {
     const auto is_beside = [&](const std::optional<Vec3>& end) {
       return end && areas_[0].is_outside(flat(*end));
     };
-    const bool is_bounded = areas_.size() == 1 && request.wind.is_calm() &&
-                            request.vehicle.speed_near.empty() && !is_beside(ends.start) &&
-                            !is_beside(ends.goal);
+    const bool is_bounded = areas_.size() == 1 && request.vehicle.speed_near.empty() &&
+                            !is_beside(ends.start) && !is_beside(ends.goal);
     order.bound_s = is_bounded ? std::min(bound_s, order.time_s) : 0;
     return order;
   }
