@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """missions_exported_test.py PROGRAM SOURCES: `altiplan export` and `upload` of a mission."""
 import csv
+import datetime
 import json
 import re
 import subprocess
 import sys
 import unittest
+import xml.etree.ElementTree
+import zipfile
 
 from plan_case import POINTS, PROGRAM, TERRAIN, PlanCase, item, plan_of
+
+KML = "{http://www.opengis.net/kml/2.2}"
+WPML = "{http://www.dji.com/wpmz/1.0.2}"
+GPX = "{http://www.topografix.com/GPX/1/1}"
 
 
 class Missions(PlanCase):
@@ -87,8 +94,80 @@ class Missions(PlanCase):
             self.assertLess(float(earlier["time_s"]), float(row["time_s"]))
         self.assertAlmostEqual(float(rows[-1]["time_s"]), answer["time_s"][0], 2)
         self.assertAlmostEqual(float(rows[-1]["latest_s"]), answer["time_s"][1], 2)
-        self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "-o", "m.geojson")
-        self.assertNotIn("times_s", (self.folder / "m.geojson").read_text())
+
+    def archive(self, entry):
+        with zipfile.ZipFile(self.folder / "m.kmz") as archive:
+            return xml.etree.ElementTree.fromstring(archive.read(entry))
+
+    def test_each_format_has_the_speeds_and_times_that_are_judged(self):
+        """Those of the gate: the copter's own (WP_SPD), then DO_CHANGE_SPEED."""
+        (self.folder / "v.param").write_text("WP_SPD,9\n")
+        options = ("--terrain", TERRAIN, "--start-time", "2026-05-01T10:00:00Z")
+        begun = datetime.datetime(2026, 5, 1, 10, tzinfo=datetime.timezone.utc)
+
+        def export(to, out, *more):
+            return self.altiplan("export", "mission.plan", *options, *more, "--to", to, "-o", out)[1]
+
+        def clock(text):
+            return (datetime.datetime.fromisoformat(text.replace("Z", "+00:00")) - begun).total_seconds()
+
+        for more, own in (((), 10), (("--params", "v.param"), 9)):
+            export("csv", "m.csv", *more)
+            times = [float(row["time_s"]) for row in csv.DictReader((self.folder / "m.csv").read_text().splitlines())]
+            speeds = [own, 6, 6, 6]  # on the way from each point; the last keeps its own
+            err = export("wpml", "m.kmz", *more)
+            self.assertIn("speeds and times, if written, are those of the fastest flight", err)
+            for entry in ("wpmz/waylines.wpml", "wpmz/template.kml"):
+                found = [float(one.text) for one in self.archive(entry).iter(f"{WPML}waypointSpeed")]
+                self.assertEqual(found, speeds, entry)
+                self.assertEqual(float(self.archive(entry).find(f".//{WPML}autoFlightSpeed").text), own)
+            export("litchi", "m_litchi.csv", *more)
+            rows = csv.DictReader((self.folder / "m_litchi.csv").read_text().splitlines())
+            self.assertEqual([float(row["speed(m/s)"]) for row in rows], speeds)
+            export("kmz", "m.kmz", *more)
+            found = {"kmz": [clock(one.text) for one in self.archive("doc.kml").iter(f"{KML}when")]}
+            export("gpx", "m.gpx", *more)
+            gpx = xml.etree.ElementTree.fromstring((self.folder / "m.gpx").read_text())
+            found["gpx"] = [clock(one.text) for one in gpx.iter(f"{GPX}time")]
+            export("geojson", "m.geojson", *more)
+            line, = (one for one in json.loads((self.folder / "m.geojson").read_text())["features"]
+                     if one["geometry"]["type"] == "LineString")
+            found["geojson"] = line["properties"]["times_s"]
+            export("czml", "m.czml", *more)
+            position = json.loads((self.folder / "m.czml").read_text())[1]["position"]
+            found["czml"] = [clock(position["epoch"]) + at for at in position["cartographicDegrees"][::4]]
+            for to, each in found.items():
+                self.assertEqual(len(each), len(times), to)
+                for here, there in zip(each, times):
+                    self.assertLessEqual(abs(here - there), 0.51, to)
+
+    def test_circles_are_as_slow_and_as_late_as_judged(self):
+        """The copter circles at less than its speed, and is at its points in order."""
+        self.plan["mission"]["items"][1].update(command=18)
+        self.plan["mission"]["items"][1]["params"][:4] = [2, 0, 40, 1]
+        (self.folder / "mission.plan").write_text(json.dumps(self.plan))
+        self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "--to", "litchi", "-o", "m.csv")
+        rows = list(csv.DictReader((self.folder / "m.csv").read_text().splitlines()))
+        speeds = [float(row["speed(m/s)"]) for row in rows]
+        self.assertGreater(len(rows), 20)
+        self.assertEqual(speeds[0], 10)
+        self.assertEqual(set(speeds[2:-5]), {7.071})  # √(WP_ACC / 2 · 40 m)
+        self.assertEqual(speeds[-2:], [6, 6])
+        self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "--to", "czml", "-o", "m.czml")
+        times = json.loads((self.folder / "m.czml").read_text())[1]["position"]["cartographicDegrees"][::4]
+        self.assertEqual(times, sorted(set(times)))
+
+    def test_formats_of_copters_warn_of_others(self):
+        """Of a mission as of a result, by the vehicle that the file names."""
+        for vehicle, warns in ((1, True), (20, True), (2, False)):
+            self.plan["mission"]["vehicleType"] = vehicle
+            self.plan["mission"]["items"] = plan_of([[lon, lat, 2500] for lon, lat, _ in POINTS])["mission"]["items"]
+            self.plan["mission"]["items"][-1]["command"] = 17
+            (self.folder / "mission.plan").write_text(json.dumps(self.plan))
+            for to in ("wpml", "litchi", "kml", "kmz", "gpx", "geojson", "czml", "mcap"):
+                _, err = self.altiplan("export", "mission.plan", "--terrain", TERRAIN, "--to", to, "-o", "out")
+                told = f"warning: what flies {to} are copters, no aeroplanes" in err
+                self.assertEqual(told, warns and to in ("wpml", "litchi"), f"{vehicle} {to}: {err}")
 
     def test_view(self):
         """The page shows the flown line with the verdict of `check`, whose violations are on it."""

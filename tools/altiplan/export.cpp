@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <filesystem>
 #include <iostream>
 
 #include "commands.hpp"
 #include "host/base/output_file.hpp"
-#include "host/import_export/placing.hpp"
 #include "host/import_export/route_csv.hpp"
 #include "mission_options.hpp"
 #include "route_export.hpp"
@@ -59,32 +57,6 @@ std::string csv_of(const JudgedPlan& judged) {
   return host::route_csv_text(rows, judged.world.truth.frame().has_position(), {});
 }
 
-/// The drawn line, with the times of the fastest flight between its points.
-std::string timed_text(const JudgedPlan& judged, const host::ExportOptions& options,
-                       const std::string& name) {
-  const Route& route = judged.report.imported.route;
-  const host::Placing place(judged.world, options, route.front());
-  host::MissionText text;
-  text.mission.name = name;
-  text.mission.home = place.home();
-  const auto add = [&](const Vec3& at, double time_s) {
-    text.local.push_back(at);
-    text.mission.items.push_back({formats::MissionItem::Kind::waypoint, place(at), 0, ""});
-    text.times_s.push_back(time_s);
-  };
-  add(route.front(), judged.report.times.front().min_s);
-  for (std::size_t n = 0; n < route.leg_count(); ++n) {
-    const std::vector<Vec3> points = route.leg(n).chords(kChordTolerance);
-    const double begin_s = judged.report.times[n].min_s;
-    const double pieces = double(points.size() - 1);
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      add(points[i], begin_s + (judged.report.times[n + 1].min_s - begin_s) * double(i) / pieces);
-    }
-  }
-  warn("times are those of the fastest flight");
-  return options.format->write(text);
-}
-
 /// A format of positions alone has no waits, drops and landings on the way: a landing would be a
 /// place on the ground to fly to.
 void expect_positions_alone(const std::string& file, const formats::MissionFile& mission,
@@ -117,8 +89,7 @@ void expect_positions_alone(const std::string& file, const formats::MissionFile&
 std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
   const std::string& file = arguments.route.result;
   const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.route.overrides);
-  const host::ExportOptions& options = arguments.route.options;
-  const host::RouteFormat& format = *options.format;
+  const host::RouteFormat& format = *arguments.route.options.format;
   // A line that becomes commands is judged as these are flown, whose frames are other ones.
   const bool becomes_commands = format.has_commands() && judged.mission.commands.empty();
   if (!becomes_commands && !judged.report.passed()) {
@@ -136,10 +107,8 @@ std::optional<std::string> text_of_mission(const ExportArguments& arguments) {
     return plan ? std::optional(format.write_plan(*plan)) : std::nullopt;
   }
   expect_positions_alone(file, judged.mission, format);
-  if (format.needs_times) {
-    return format.write == host::format_named("csv").write
-               ? csv_of(judged)
-               : timed_text(judged, options, std::filesystem::path(file).stem().string());
+  if (&format == &host::format_named("csv")) {
+    return csv_of(judged);
   }
   return exported_route(judged, arguments.route).text;
 }

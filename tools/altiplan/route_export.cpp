@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "route_export.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -26,6 +27,17 @@ void say(const std::string& message) {
   if (log_level() != LogLevel::quiet) {
     std::cerr << "altiplan: " << message << '\n';
   }
+}
+
+/// Of what flies it, as it is judged: not a copter, if that is not known.
+std::optional<formats::Airframe> airframe_of(const JudgedPlan& judged) {
+  std::optional<formats::Airframe> airframe = judged.gate.airframe;
+  for (const formats::Autopilot autopilot : judged.report.autopilots) {
+    if (!judged.mission.commands.empty() && (!airframe || *airframe == formats::Airframe::copter)) {
+      airframe = autopilot.airframe;
+    }
+  }
+  return airframe;
 }
 
 /// The accepted route or the flown track; none if the result lacks it.
@@ -189,7 +201,7 @@ std::optional<host::Plan> fewest_plan(const LoadedRoute& loaded, const RouteExpo
 
 host::Exported exported_route(const JudgedPlan& judged, const RouteExport& route) {
   host::Mission world = judged.world;
-  if (const auto airframe = judged.gate.airframe) {
+  if (const auto airframe = airframe_of(judged)) {
     world.vehicle_type = *airframe == formats::Airframe::copter  ? host::VehicleType::copter
                          : *airframe == formats::Airframe::plane ? host::VehicleType::plane
                                                                  : host::VehicleType::vtol;
@@ -200,9 +212,17 @@ host::Exported exported_route(const JudgedPlan& judged, const RouteExport& route
   world.request.start.position = source.route.front();
   world.request.goal = {source.route.back()};
   world.request.goal.tolerance_m = 1;
-  host::ExportOptions options = route.options;
-  options.has_times = false;
-  host::Exported written = host::export_route(world, source, options);
+  const host::PlanReport& report = judged.report;
+  const auto speed = std::find_if(report.speeds_mps.begin(), report.speeds_mps.end(),
+                                  [](double speed_mps) { return speed_mps > 0; });
+  if (!route.options.format->has_commands() && speed != report.speeds_mps.end()) {
+    world.request.vehicle.speed_mps = *speed;
+    for (std::size_t n = 0; n < source.route.size(); ++n) {
+      source.timing.push_back({report.times[n].min_s, report.speeds_mps[n]});
+    }
+    warn("speeds and times, if written, are those of the fastest flight");
+  }
+  host::Exported written = host::export_route(world, source, route.options);
   for (const std::string& message : written.messages) {
     say(message);
   }

@@ -254,7 +254,7 @@ void Hover::add_beside(const Destination& to, double distance) {
 }
 
 void Hover::go(std::size_t command, const char* what, const Destination& to) {
-  flight_.begin(command, what);
+  flight_.begin(command, what).speed_mps = speed_mps[1];
   const double vertical = std::max(std::max(to.high - low, 0.0) / climb_mps[0],
                                    std::max(high - to.low, 0.0) / sink_mps[0]);
   const double rise = std::max(to.low - high, 0.0);  // at least
@@ -297,7 +297,7 @@ void Hover::go(std::size_t command, const char* what, const Destination& to) {
 }
 
 void Hover::arc(std::size_t command, const Destination& to, double angle) {
-  flight_.begin(command, "the arc");
+  flight_.begin(command, "the arc").speed_mps = speed_mps[1];
   const Eigen::Vector2d chord = to.at - at;
   const double radius = chord.norm() / (2 * std::sin(std::abs(angle) / 2));
   // Clockwise arcs have their centre to the right of the chord, or to the left beyond half a turn.
@@ -375,8 +375,8 @@ void Hover::circle(std::size_t command, const Destination& centre, double radius
     edge.low = low;
     edge.high = high;
   }
-  flight_.begin(command, "its circle");
   const double v = std::min({speed_mps[0], std::sqrt(0.5 * 2.5 * radius), radians(20) * radius});
+  flight_.begin(command, "its circle").speed_mps = v;
   const double inner = is_from_centre ? 0 : radius;
   std::array<double, 2> lags{0, 0};
   if (centre.above_ground) {

@@ -439,7 +439,7 @@ void Wing::fill_between(const std::vector<std::vector<Passed>>& passed) {
 }
 
 void Wing::go(std::size_t command, const char* what, const Leg& leg) {
-  flight_.begin(command, what);
+  flight_.begin(command, what).speed_mps = speed_mps[1];
   does_arrive_ = true;
   if (has_track_) {
     cut_corner(leg);
@@ -534,7 +534,7 @@ std::array<double, 2> Wing::heights_at(const Destination& to, const Eigen::Vecto
 void Wing::circle(std::size_t command, const char* what, const Destination& centre, double radius,
                   bool clockwise, const Stay& stay, const std::optional<Destination>& next,
                   bool leaves_on_tangent) {
-  flight_.begin(command, what);
+  flight_.begin(command, what).speed_mps = speed_mps[1];
   const double z = heights_at(centre, centre.at)[0];
   double below = 0;  // the height that is sought
   double above = 0;

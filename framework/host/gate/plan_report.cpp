@@ -78,6 +78,7 @@ FlownMission as_drawn(const formats::MissionFile& plan, const World& world, doub
       const double seconds = (here - from).norm() / speed_mps;
       drawn.time += {seconds, seconds};
       part.time = drawn.time;
+      part.speed_mps = speed_mps;
       drawn.parts.push_back(std::move(part));
     }
     before = here;
@@ -204,20 +205,31 @@ class Gate {
   }
 
   /// Of each drawn point: from the earliest to the latest of the flights, when its command is done
-  /// for the first time.
+  /// for the first time, and its circle begun; and the greatest speed on the way to it.
   void add_times(PlanReport& report, const std::vector<FlownMission>& all) const {
-    for (const MissionItem& item : report.imported.items) {
+    const std::vector<MissionItem>& items = report.imported.items;
+    for (std::size_t n = 0; n < items.size(); ++n) {
+      const bool begins_circle = n + 1 < items.size() && items[n + 1].place == items[n].place;
+      const bool ends_circle = n > 0 && items[n - 1].place == items[n].place;
       TimeSpan left{kInfinity, 0};
+      double speed_mps = 0;
       for (const FlownMission& flown : all) {
         const auto is_of = [&](const FlownPart& part) {
-          return plan_.commands[part.command].place == item.place;
+          return plan_.commands[part.command].place == items[n].place;
         };
         const auto first = std::find_if(flown.parts.begin(), flown.parts.end(), is_of);
-        const auto next = std::find_if_not(first, flown.parts.end(), is_of);
-        const TimeSpan time = first == next ? TimeSpan{} : std::prev(next)->time;
+        const auto last = std::find_if_not(first, flown.parts.end(), is_of);
+        const auto circle = std::find_if(
+            first, last, [](const FlownPart& part) { return part.what == "its circle"; });
+        const auto end = begins_circle && circle != first ? circle : last;
+        const TimeSpan time = first == end ? TimeSpan{} : std::prev(end)->time;
         left = {std::min(left.min_s, time.min_s), std::max(left.max_s, time.max_s)};
+        for (auto part = ends_circle ? circle : first; part != end; ++part) {
+          speed_mps = std::max(speed_mps, part->speed_mps);
+        }
       }
       report.times.push_back(left);
+      report.speeds_mps.push_back(speed_mps);
     }
   }
 

@@ -131,6 +131,7 @@ struct PlanReport {
   Polyline line;                               ///< one that it may fly, for pictures
   TimeSpan time;                               ///< by any of them: the only time of the mission
   std::vector<TimeSpan> times;                 ///< when each point of the drawn route is left first
+  std::vector<double> speeds_mps;              ///< the greatest on the way to each; 0: none
   double lowest_m = kInfinity;                 ///< above ground, but where it takes off and lands
   Measures measures;
   std::optional<EnergyUse> energy{};       ///< where a battery is known

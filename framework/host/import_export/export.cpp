@@ -118,6 +118,9 @@ bool thin(const Mission& mission, ExportSource& source, const ExportOptions& opt
     if (flown) {
       less.times.push_back(source.times[n]);
     }
+    if (!source.timing.empty()) {
+      less.timing.push_back(source.timing[n]);
+    }
   }
   for (const std::size_t n : source.via) {
     const auto found = std::lower_bound(kept.begin(), kept.end(), n);
@@ -269,6 +272,10 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   }
   result = written_soundly(mission, source, place, options, std::move(text));
   if (result.text) {
+    if (options.format->is_copters && mission.vehicle_type != VehicleType::copter) {
+      notes.insert(notes.begin(), "warning: what flies " + std::string(options.format->name) +
+                                      " are copters, no aeroplanes");
+    }
     if (options.format->notes != nullptr) {
       const std::vector<std::string> own = options.format->notes(result.mission);
       notes.insert(notes.begin(), own.begin(), own.end());

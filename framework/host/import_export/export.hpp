@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/flight/track_judge.hpp"
+#include "host/import_export/place_timing.hpp"
 #include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/stored_result.hpp"
@@ -27,7 +28,6 @@ struct ExportOptions {
   /// Altitude of home above sea level; default: the ground below the start.
   std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
-  bool has_times = true;  ///< of a mission only a span is known, which maps cannot show
 
   /// The reason why the options cannot be combined; "" if they can.
   std::string problem() const;
@@ -37,11 +37,12 @@ struct ExportOptions {
 struct ExportSource {
   std::string name;
   Route route;
-  std::vector<double> times;        ///< of a flight, one per point
-  std::vector<FlightEvent> events;  ///< of the flight
-  bool telemetry = false;           ///< the flight was a vehicle's
-  std::vector<PlacedStop> stops{};  ///< in order, where the route waits for them
-  std::vector<std::size_t> via{};   ///< waypoints at via points; export_route finds a route's
+  std::vector<double> times;          ///< of a flight, one per point
+  std::vector<FlightEvent> events;    ///< of the flight
+  bool telemetry = false;             ///< the flight was a vehicle's
+  std::vector<PlacedStop> stops{};    ///< in order, where the route waits for them
+  std::vector<std::size_t> via{};     ///< waypoints at via points; export_route finds a route's
+  std::vector<PlaceTiming> timing{};  ///< of each waypoint, where an autopilot's flight is known
 };
 
 struct Exported {

@@ -139,10 +139,22 @@ WrittenRoute places_of(const Mission& mission, const ExportSource& source,
   return written;
 }
 
-/// Of a flight, its own times; its speeds are what the vehicle made of them.
+/// Of a flight, its own times; its speeds are what the vehicle made of them. Of an autopilot's, its
+/// own too: between waypoints in proportion, and the speed of the leg in the middle of the way.
 std::vector<PlaceTiming> timing_of(const WrittenRoute& written, const Mission& mission,
                                    const ExportSource& source) {
   std::vector<PlaceTiming> timing;
+  double before = 0;
+  for (const MissionPlace& place : written.places) {
+    if (!source.timing.empty()) {
+      const double from_s = source.timing[std::size_t(place.along)].time_s;
+      const double to_s = source.timing[std::size_t(std::ceil(place.along))].time_s;
+      const double share = place.along - std::floor(place.along);
+      const auto leg_end = std::size_t(std::ceil((before + place.along) / 2));
+      timing.push_back({from_s + share * (to_s - from_s), source.timing[leg_end].speed_mps});
+      before = place.along;
+    }
+  }
   for (const double time_s : source.times) {
     timing.push_back({time_s});
   }
@@ -290,10 +302,8 @@ Exported written_soundly(const Mission& mission, const ExportSource& source, con
       break;
     }
     attempt.text.times_s.clear();
-    if (options.has_times) {
-      for (const PlaceTiming& each : attempt.timing) {
-        attempt.text.times_s.push_back(each.time_s);
-      }
+    for (const PlaceTiming& each : attempt.timing) {
+      attempt.text.times_s.push_back(each.time_s);
     }
     std::optional<std::string> now = attempt.with_decimals(mission.request, false, decimals);
     const bool as_turns = !now && written.turns > 0;

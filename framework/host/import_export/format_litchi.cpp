@@ -112,7 +112,7 @@ std::string litchi_text(const MissionText& text) {
   const std::vector<MissionItem>& items = text.mission.items;
   for (std::size_t n = 0; n < items.size(); ++n) {
     const formats::MissionPoint& at = items[n].at;
-    const double next = n + 1 < items.size() ? items[n + 1].speed_mps : 0;
+    const double next = items[std::min(n + 1, items.size() - 1)].speed_mps;
     const double speed = next > 0 ? next : text.speed_mps;
     out += rounded_text(at.lat, text.decimals.degrees) + "," +
            rounded_text(at.lon, text.decimals.degrees) + "," +

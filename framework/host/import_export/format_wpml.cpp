@@ -141,7 +141,7 @@ class WpmlWriter {
 
   /// On the way from the item to the next one.
   double speed_after(std::size_t item) const {
-    const double own = item + 1 < items_.size() ? items_[item + 1].speed_mps : 0;
+    const double own = items_[std::min(item + 1, items_.size() - 1)].speed_mps;
     return own > 0 ? own : text_.speed_mps;
   }
 
@@ -167,9 +167,6 @@ std::vector<std::string> wpml_notes(const MissionText& text) {
   if (parts > 1) {
     notes.push_back("split into " + counted(parts, "wayline") +
                     " of at most 65,536 points, to be flown one after the other");
-  }
-  if (text.vehicle == VehicleType::plane) {
-    notes.emplace_back("warning: DJI's aircraft that fly waylines are copters, not aeroplanes");
   }
   return notes;
 }

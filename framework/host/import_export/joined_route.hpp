@@ -15,6 +15,7 @@ struct MissionPlace {
   Vec3 at{0, 0, 0};
   std::optional<formats::MissionCircle> circle{};
   double hold_s = 0;  ///< for which the vehicle waits there, of a route that is written
+  double along = 0;   ///< of the same: the waypoint, or between two the share of the leg beside it
 };
 
 struct JoinedRoute {

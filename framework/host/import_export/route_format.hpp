@@ -21,7 +21,7 @@ struct RouteFormat {
   const char* description = "";                  ///< for people
   std::vector<formats::AltitudeFrame> frames{};  ///< of its heights, the default first
   Zones zones = Zones::none;
-  bool needs_times = false;  ///< cannot say a route without the time of each point
+  bool is_copters = false;  ///< those that fly it are copters
   /// The file's content. What it cannot hold is left out.
   std::string (*write)(const MissionText&) = nullptr;
   /// The same of a vehicle's plan; null of a format without commands, such as take-offs.

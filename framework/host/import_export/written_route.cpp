@@ -63,20 +63,21 @@ class Writing {
       : route_(route), form_(form), request_(request), via_(via) {}
 
   WrittenRoute written() {
-    add(route_.front(), false);
+    add(route_.front(), false, 0);
     for (std::size_t i = 0; i < route_.leg_count(); ++i) {
       const Leg leg = route_.leg(i);
       if (leg.waits()) {
         result_.places.back().hold_s += leg.hold_s;
       } else if (!leg.turns()) {
-        add(leg.to, is_joint(i + 1));
+        add(leg.to, is_joint(i + 1), double(i + 1));
       } else if (form_.loiters && is_loiter(i)) {
         result_.places.push_back(circle_of(leg));
+        result_.places.back().along = double(i + 1);
         kept_.push_back(true);
         ++result_.loiters;
       } else {
-        add_points(leg);
-        add(leg.to, is_joint(i + 1));
+        add_points(leg, i);
+        add(leg.to, is_joint(i + 1), double(i + 1));
       }
     }
     drop_joints();
@@ -87,16 +88,17 @@ class Writing {
   }
 
  private:
-  void add(const Vec3& point, bool is_joint) {
-    result_.places.push_back({point});
+  void add(const Vec3& point, bool is_joint, double along) {
+    result_.places.push_back({point, {}, 0, along});
     kept_.push_back(!is_joint);
   }
 
-  void add_points(const Leg& turn) {
+  void add_points(const Leg& turn, std::size_t i) {
     // Beside heights at the joints, which add to it at a right angle.
     const Polyline corners = corners_of(turn, 0.8 * form_.tolerance);
     for (const Vec3& corner : corners) {
-      add(corner, false);
+      const auto n = double(&corner - corners.data());
+      add(corner, false, double(i) + (n + 0.5) / double(corners.size()));
     }
     ++result_.turns;
     result_.points += corners.size();
