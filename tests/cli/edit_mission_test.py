@@ -74,6 +74,56 @@ class EditMission(PlanCase):
         self.assertIn("another program", session.ask("save", status=400)["error"])
         self.assertEqual(self.plan.read_text(), "{}")
 
+    def test_saving_keeps_every_other_byte(self):
+        """Whatever program wrote the file: its indentation, order of keys, numbers and ends of lines."""
+        plan = json.loads(self.plan.read_text())
+        plan["mission"]["items"][3].update(Altitude=1500, AltitudeMode=2, AMSLAltAboveTerrain=None, note="a \\ \"params\": [1, {")
+        compact, tabs = json.dumps(plan, separators=(",", ":")), json.dumps(plan, indent="\t").replace("\n", "\r\n")
+        old_form = json.loads(json.dumps(plan))
+        for one in old_form["mission"]["items"]:
+            one["coordinate"], one["params"] = one["params"][4:], one["params"][:4]
+        ours = json.dumps(plan, indent=4, sort_keys=True).replace("1500", "1.5e3") + "\n"
+        for text in (compact, tabs, json.dumps(plan, indent=2), "\ufeff" + ours, json.dumps(old_form, indent=1)):
+            self.plan.write_bytes(text.encode())
+            session = self.begin()
+            session.edit(move={"key": "mission.items.3", "by": [0, 0, 20.5]})
+            session.ask("save")
+            lines, after = text.split("\n"), self.plan.read_bytes().decode().split("\n")
+            if len(lines) > 1:
+                changed = [n for n, line in enumerate(lines) if line != after[n]]
+                self.assertEqual(len(changed), 2, changed)
+                for n in changed:
+                    self.assertEqual(re.sub("1500|1.5e3", "1520.5", lines[n]), after[n])
+            else:
+                begin, end = compact.index('"note"') - 200, len(compact) - len(compact.split('"note"')[1])
+                part = compact[begin:end]
+                part = part[:part.rindex('"params"')] + re.sub("1500", "1520.5", part[part.rindex('"params"'):])
+                self.assertEqual(after[0], compact[:begin] + part + compact[end:])
+
+    def test_the_landing_is_moved_and_numbered(self):
+        """Of a copter too, whose landing is no part of the line."""
+        plan = json.loads(self.plan.read_text())
+        lon, lat, _ = HIGH[3]
+        landing = dict(item([lon + 0.001, lat, 0], 10), command=21, frame=3)
+        plan["mission"]["items"].append(landing)
+        self.plan.write_text(json.dumps(plan))
+        subprocess.run([PROGRAM, "view", self.plan, "--terrain", TERRAIN, "-o", self.folder / "page.html"], check=True)
+        shown = json.loads(re.search(r'<script id="scene"[^>]*>(.*?)</script>', (self.folder / "page.html").read_text(), re.S)[1])
+        self.assertEqual([one["number"] for one in shown["numbered"]], [1, 2, 3, 4, 10])
+        session = self.begin()
+        _, page = session.request("GET", session.address.path)
+        scene = json.loads(re.search(rb'<script id="scene"[^>]*>(.*?)</script>', page, re.S)[1])
+        self.assertEqual([one["number"] for one in scene["movable"]], [1, 2, 3, 4, 10])
+        last = scene["movable"][-1]
+        self.assertEqual(last["name"], "item 10 (landing)")
+        self.assertGreater(last["at"][2], 200)  # on the ground
+        answer = session.edit(move={"key": last["key"], "by": [50, 0, 0]})
+        moved = answer["answers"][0]["movable"][-1]["at"]
+        self.assertAlmostEqual(moved[0] - last["at"][0], 50, 1)
+        session.ask("save")
+        after = json.loads(self.plan.read_text())["mission"]["items"][-1]["params"]
+        self.assertAlmostEqual((after[5] - landing["params"][5]) * 89380, 50, delta=1)
+
     def test_waypoints(self):
         lines = ["QGC WPL 110", "0\t1\t0\t16\t0\t0\t0\t0\t36.48\t-84.38\t400\t1"]
         for n, (lon, lat, _) in enumerate(POINTS):

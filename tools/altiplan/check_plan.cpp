@@ -662,6 +662,26 @@ Vec3 JudgedPlan::in_frame(const Vec3& p, const Frame& page) const {
   return {x, y, p.z()};
 }
 
+std::vector<PlacedItem> JudgedPlan::items(const Frame& page) const {
+  const host::ImportedRoute& drawn = report.imported;
+  std::vector<PlacedItem> all;
+  for (const formats::MissionItem& item : mission.items) {
+    const auto in_line =
+        std::find_if(drawn.items.begin(), drawn.items.end(),
+                     [&](const formats::MissionItem& one) { return one.place == item.place; });
+    const auto n = std::size_t(in_line - drawn.items.begin());
+    Vec3 at;
+    if (n < std::min(drawn.items.size(), drawn.route.size())) {
+      at = drawn.route[n];
+    } else {
+      at = host::to_local(item.at, mission.home, world.truth);
+      at.z() = std::max(at.z(), world.truth.ground(at.x(), at.y()).value_or(at.z()));
+    }
+    all.push_back({item.place, report.name_of_item(item.place), item.number, in_frame(at, page)});
+  }
+  return all;
+}
+
 host::JudgedLine JudgedPlan::line(const Frame& page) const {
   host::JudgedLine shown;
   shown.file = report.file;

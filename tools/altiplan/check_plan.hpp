@@ -42,6 +42,14 @@ struct PlanCheck {
   std::optional<std::string> fixed_returns;  ///< for a parameter
 };
 
+/// An item of a mission that has a place.
+struct PlacedItem {
+  std::string place;  ///< in the file, as formats::MissionItem has it
+  std::string name;   ///< "item 3 (waypoint)"
+  int number = 0;     ///< as ground stations show it; 0: none
+  Vec3 at{0, 0, 0};   ///< where its line leads, of a landing the item's own place, not below ground
+};
+
 /// A mission, the world in which it is flown, and the verdict.
 struct JudgedPlan {
   formats::MissionFile mission;
@@ -53,6 +61,8 @@ struct JudgedPlan {
   std::vector<std::string> findings() const;
   /// "pass: mission.plan, 16 waypoints, 10.713 km, at least 53.1 m above ground, 17.9 to 21.7 min"
   std::string verdict() const;
+  /// Its items in the page's frame, in order.
+  std::vector<PlacedItem> items(const Frame& page) const;
   /// The line as it is flown, with that verdict, for a page of that frame: that of another world
   /// about the mission, or its own.
   host::JudgedLine line(const Frame& page) const;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <set>
 
 #include "altiplan/formats/input_file.hpp"
 #include "host/base/output_file.hpp"
@@ -27,23 +26,16 @@ bool is_movable(const formats::MissionFile& mission, const std::string& place) {
   return command != mission.commands.end() && std::count(place.begin(), place.end(), '.') <= 2;
 }
 
-std::vector<MovableItem> items_of(const JudgedPlan& judged, const Frame& page) {
-  const host::ImportedRoute& drawn = judged.report.imported;
-  std::vector<MovableItem> items;
-  std::set<std::string> seen;
-  for (std::size_t n = 0; n < std::min(drawn.items.size(), drawn.route.size()); ++n) {
-    const formats::MissionItem& item = drawn.items[n];
-    if (is_movable(judged.mission, item.place) && seen.insert(item.place).second) {
-      items.push_back({item.place, judged.report.name_of_point(n), item.number,
-                       judged.in_frame(drawn.route[n], page)});
-    }
-  }
+std::vector<PlacedItem> items_of(const JudgedPlan& judged, const Frame& page) {
+  std::vector<PlacedItem> items = judged.items(page);
+  std::erase_if(items,
+                [&](const PlacedItem& item) { return !is_movable(judged.mission, item.place); });
   return items;
 }
 
-Json movable(const std::vector<MovableItem>& items) {
+Json movable(const std::vector<PlacedItem>& items) {
   Json all = Json::array();
-  for (const MovableItem& item : items) {
+  for (const PlacedItem& item : items) {
     all.push_back({{"key", item.place},
                    {"kind", "item"},
                    {"plugin", ""},
@@ -107,7 +99,7 @@ std::string MissionEditor::moved(const std::string& place, const Vec3& by,
                                  std::uint64_t gesture) const {
   const State& before = states_[goes_on(gesture) ? now_ - 1 : now_];
   const auto item = std::find_if(before.items.begin(), before.items.end(),
-                                 [&](const MovableItem& one) { return one.place == place; });
+                                 [&](const PlacedItem& one) { return one.place == place; });
   if (item == before.items.end()) {
     throw Error("there is no item '" + place + "' to move");
   }

@@ -12,14 +12,6 @@
 
 namespace altiplan::cli {
 
-/// An item of a mission as something to drag.
-struct MovableItem {
-  std::string place;  ///< in the file, as formats::MissionItem has it
-  std::string name;   ///< "item 3 (waypoint)"
-  int number = 0;     ///< as ground stations show it; 0: none
-  Vec3 at{0, 0, 0};   ///< in the world's frame
-};
-
 /// The state of `altiplan edit` of a mission: its text with items moved, judged anew at each move
 /// as `altiplan check` does. Thread-safe. What the page asks for and gets is in
 /// tools/viewer/README.md.
@@ -35,8 +27,8 @@ class MissionEditor {
   /// The mission after a move.
   struct State {
     std::string text;
-    std::uint64_t gesture = 0;  ///< the drag that it belongs to; 0: none
-    std::vector<MovableItem> items;
+    std::uint64_t gesture = 0;      ///< the drag that it belongs to; 0: none
+    std::vector<PlacedItem> items;  ///< that can be dragged
   };
 
   /// What the page has at first.

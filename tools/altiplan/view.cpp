@@ -139,13 +139,11 @@ host::Scene scene_of(const std::vector<host::StoredResult>& results) {
 }
 
 /// The places of a mission's items, with the numbers that ground stations show.
-host::Json numbered(const host::ImportedRoute& drawn) {
+host::Json numbered(const JudgedPlan& judged) {
   host::Json items = host::Json::array();
-  int last = 0;  // a circle may have two places
-  for (std::size_t n = 0; n < std::min(drawn.items.size(), drawn.route.size()); ++n) {
-    if (const int number = drawn.items[n].number; number != last) {
-      items.push_back({{"number", number}, {"at", host::to_json(Polyline{drawn.route[n]})[0]}});
-      last = number;
+  for (const PlacedItem& item : judged.items(judged.world.truth.frame())) {
+    if (item.number > 0) {
+      items.push_back({{"number", item.number}, {"at", host::to_json(Polyline{item.at})[0]}});
     }
   }
   return items;
@@ -159,7 +157,7 @@ host::Scene scene_of_mission(const ViewArguments& arguments) {
   }
   const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.overrides);
   host::Scene scene = host::line_scene(judged.line(judged.world.truth.frame()), judged.world);
-  scene.json["numbered"] = numbered(judged.report.imported);
+  scene.json["numbered"] = numbered(judged);
   return scene;
 }
 

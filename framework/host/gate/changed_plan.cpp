@@ -1,55 +1,127 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/changed_plan.hpp"
 
+#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include "altiplan/error.hpp"
-#include "host/result/result_json.hpp"
+#include "host/base/json.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
 namespace {
 
-constexpr double kDegrees = 1e7;  // a centimetre, as autopilots store them
-constexpr double kMetres = 1e3;
+constexpr int kDegrees = 7;  // decimals: a centimetre, as autopilots store them
+constexpr int kMetres = 3;
 
-double of_degrees(double value) { return std::round(value * kDegrees) / kDegrees; }
-double of_metres(double value) { return std::round(value * kMetres) / kMetres; }
+/// Where values stand in a text that is JSON, so that all else stays as it is.
+class JsonText {
+ public:
+  struct Part {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  explicit JsonText(const std::string& text) : text_(text) {}
 
-/// "mission.items.3" as a JSON pointer.
-Json::json_pointer pointer_of(std::string place) {
-  for (char& letter : place) {
-    letter = letter == '.' ? '/' : letter;
+  std::string_view operator[](const Part& part) const {
+    return std::string_view(text_).substr(part.begin, part.end - part.begin);
   }
-  return Json::json_pointer("/" + place);
-}
-
-void raise(Json& number, double by) {
-  if (number.is_number() && by != 0) {
-    number = of_metres(number.get<double>() + by);
-  }
-}
-
-std::string changed_json(const std::string& text, const std::vector<ChangedItem>& changes) {
-  Json plan = parse_json(text);
-  for (const ChangedItem& change : changes) {
-    Json& item = plan.at(pointer_of(change.place));
-    const bool old_form = item.contains("coordinate");
-    Json& place = old_form ? item.at("coordinate") : item.at("params");
-    const std::size_t first = old_form ? 0 : 4;
-    if (change.lonlat) {
-      place.at(first) = of_degrees(change.lonlat->at(1));
-      place.at(first + 1) = of_degrees(change.lonlat->at(0));
-    }
-    raise(place.at(first + 2), change.raised_by_m);
-    for (const char* key : {"Altitude", "AMSLAltAboveTerrain"}) {  // the ground station's own
-      if (item.contains(key)) {
-        raise(item.at(key), change.raised_by_m);
+  /// The value of that key or, of a list, of that number; none if there is none.
+  std::optional<Part> in(const Part& whole, const std::string& key) const {
+    const bool is_list = text_[whole.begin] == '[';
+    std::size_t nth = 0;
+    for (std::size_t at = next(whole.begin + 1); at + 1 < whole.end; ++nth) {
+      bool is_it = is_list && std::to_string(nth) == key;
+      if (!is_list) {
+        const Part name{at, end_of(at)};
+        is_it = (*this)[name] == "\"" + key + "\"";
+        at = next(next(name.end) + 1);  // behind the colon
       }
+      const Part value{at, end_of(at)};
+      if (is_it) {
+        return value;
+      }
+      at = next(next(value.end) + 1);  // behind the comma
+    }
+    return std::nullopt;
+  }
+  /// The value at "mission.items.3". Throws Error if there is none.
+  Part at(const std::string& place) const {
+    std::optional<Part> part = Part{std::min(text_.find('{'), text_.size()), text_.size()};
+    for (std::string keys = place + "."; part && !keys.empty(); keys.erase(0, keys.find('.') + 1)) {
+      part = in(*part, keys.substr(0, keys.find('.')));
+    }
+    if (!part) {
+      throw Error("there is no '" + place + "' to change");
+    }
+    return *part;
+  }
+
+ private:
+  std::size_t next(std::size_t at) const {
+    return std::min(text_.find_first_not_of(" \t\r\n", at), text_.size());
+  }
+  /// Of the value that begins there.
+  std::size_t end_of(std::size_t at) const {
+    constexpr std::string_view kBehind = ",:]} \t\r\n";
+    std::size_t depth = 0;
+    do {
+      if (text_[at] == '"') {
+        for (++at; text_[at] != '"'; ++at) {
+          at += text_[at] == '\\' ? 1 : 0;
+        }
+      }
+      depth += text_[at] == '{' || text_[at] == '[' ? 1 : 0;
+      depth -= text_[at] == '}' || text_[at] == ']' ? 1 : 0;
+      ++at;
+    } while (at < text_.size() && (depth > 0 || kBehind.find(text_[at]) == kBehind.npos));
+    return at;
+  }
+
+  const std::string& text_;
+};
+
+/// The text of an item with its numbers changed.
+std::string changed_item(std::string text, const ChangedItem& change) {
+  const JsonText json(text);
+  const JsonText::Part item = json.at(change.place);
+  std::vector<std::pair<JsonText::Part, std::string>> parts;
+  const auto raise = [&](const std::optional<JsonText::Part>& part) {
+    const std::string_view old = part ? json[*part] : "null";
+    double metres = 0;
+    const auto read = std::from_chars(old.data(), old.data() + old.size(), metres);
+    if (change.raised_by_m != 0 && read.ec == std::errc()) {
+      parts.emplace_back(*part, rounded_text(metres + change.raised_by_m, kMetres));
+    }
+  };
+  const bool old_form = json.in(item, "coordinate").has_value();
+  const std::string list = change.place + (old_form ? ".coordinate." : ".params.");
+  const int first = old_form ? 0 : 4;
+  if (change.lonlat) {
+    for (const int axis : {0, 1}) {
+      parts.emplace_back(json.at(list + std::to_string(first + axis)),
+                         rounded_text(change.lonlat->at(std::size_t(1 - axis)), kDegrees));
     }
   }
-  return plan.dump(4) + "\n";
+  raise(json.at(list + std::to_string(first + 2)));
+  for (const char* key : {"Altitude", "AMSLAltAboveTerrain"}) {  // the ground station's own
+    raise(json.in(item, key));
+  }
+  std::sort(parts.begin(), parts.end(),
+            [](const auto& a, const auto& b) { return a.first.begin > b.first.begin; });
+  for (const auto& [part, number] : parts) {
+    text.replace(part.begin, part.end - part.begin, number);
+  }
+  return text;
+}
+
+std::string changed_json(std::string text, const std::vector<ChangedItem>& changes) {
+  for (const ChangedItem& change : changes) {
+    text = changed_item(std::move(text), change);
+  }
+  return text;
 }
 
 std::string number(double value, int digits) {
@@ -111,13 +183,21 @@ std::string changed_plan(const std::string& text, formats::MissionFile::Format f
 
 std::string with_rally_points(const std::string& text,
                               const std::vector<formats::MissionPoint>& points) {
-  Json plan = parse_json(text);
-  Json& rally = plan["rallyPoints"];
+  const JsonText json(text);
+  const JsonText::Part part = json.at("rallyPoints");
+  Json rally = parse_json(json[part]);
   rally["version"] = 2;
   rally["points"] = Json::array();
   for (const formats::MissionPoint& point : points) {
     rally["points"].push_back({point.lat, point.lon, point.altitude_m});
   }
-  return plan.dump(4) + "\n";
+  // Indented as its own line is.
+  const std::size_t line = text.rfind('\n', part.begin) + 1;
+  const std::size_t indent = text.find_first_not_of(" \t", line) - line;
+  std::string words = json_text(rally, line > 0 ? int(std::max<std::size_t>(indent, 1)) : -1);
+  for (std::size_t at = words.find('\n'); at != words.npos; at = words.find('\n', at + 1)) {
+    words.insert(at + 1, text, line, indent);
+  }
+  return text.substr(0, part.begin) + words + text.substr(part.end);
 }
 }  // namespace altiplan::host

@@ -145,6 +145,8 @@ struct PlanReport {
   }
   /// Of a command.
   std::string name_of(std::size_t command) const;
+  /// Of an item at that place of the file; "" of none.
+  std::string name_of_item(const std::string& place) const;
   /// Of a point of the drawn route: "item 3 (waypoint)", "point 3" where the file numbers nothing,
   /// "waypoint 3" where the route has other points than the file.
   std::string name_of_point(std::size_t waypoint) const;

@@ -35,16 +35,16 @@ std::string PlanReport::name_of(std::size_t command) const {
   return name_of_command(commands[command]);
 }
 
+std::string PlanReport::name_of_item(const std::string& place) const {
+  const auto command = std::find_if(commands.begin(), commands.end(),
+                                    [&](const MissionCommand& one) { return one.place == place; });
+  return command == commands.end() ? "" : name_of_command(*command);
+}
+
 std::string PlanReport::name_of_point(std::size_t waypoint) const {
-  if (waypoint < imported.items.size()) {
-    const MissionItem& item = imported.items[waypoint];
-    for (const MissionCommand& command : commands) {
-      if (command.place == item.place) {
-        return name_of_command(command);
-      }
-    }
-  }
-  return "waypoint " + std::to_string(waypoint);
+  const std::string name =
+      waypoint < imported.items.size() ? name_of_item(imported.items[waypoint].place) : "";
+  return name.empty() ? "waypoint " + std::to_string(waypoint) : name;
 }
 
 std::string PlanReport::height_in_words() const {
