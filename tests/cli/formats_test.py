@@ -7,6 +7,7 @@ import csv
 import io
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -304,6 +305,43 @@ class Formats(unittest.TestCase):
             altiplan("check", path, *options, "--speed", "60", code=0)
             altiplan("check", path, *options, "--speed", "1", code=1)
             altiplan("check", path, *options[:4], code=1)
+
+    def test_a_template_that_contradicts_the_waylines(self):
+        """DJI Pilot makes the waylines anew from it: what passes may not be what is flown."""
+        with zipfile.ZipFile(io.BytesIO(self.export("wpml")[0])) as archive:
+            template, waylines = (archive.read(name).decode() for name in archive.namelist())
+        first = template.index("<Placemark>")
+        height = re.search(r"<wpml:height>(.*?)</wpml:height>", template)[1]
+        lon = re.search(r"<coordinates>(.*?),", template)[1]
+        last = template.rindex("<Placemark>")
+        globally = re.sub(r"<wpml:height>.*?</wpml:height>", "", template).replace("useGlobalHeight>0<", "useGlobalHeight>1<")
+        above_sea = re.sub(r"<wpml:height>(.*?)</wpml:height>",
+                           lambda found: f"<wpml:height>{float(found[1]) + self.home[2]:.3f}</wpml:height>", template)
+        mode = "<wpml:heightMode>{}</wpml:heightMode>"
+        relative, egm96 = mode.format("relativeToStartPoint"), mode.format("EGM96")
+        area = template[:first] + template[template.index("</Folder>"):]
+        for name, changed, words in (
+                ("aside", template.replace(f"<coordinates>{lon}", f"<coordinates>{float(lon) + 1e-4:.7f}", 1),
+                 "point 1 is 9.0 m away from that of the waylines"),
+                ("lower", template.replace(f"<wpml:height>{height}", f"<wpml:height>{float(height) - 3:.3f}", 1),
+                 "point 1 is 3.0 m away"),
+                ("fewer", template[:last] + template[template.index("</Folder>"):], f"{len(self.route) - 1} points there, "),
+                ("level", globally, "m away"), ("sea", template.replace(relative, egm96), "m away"),
+                ("ground", template.replace(relative, mode.format("aboveGroundLevel")), "its heights count from elsewhere"),
+                ("turns", template.replace(">toPointAndStopWithDiscontinuityCurvature<", ">coordinateTurn<"),
+                 "how DJI flies the globalWaypointTurnMode 'coordinateTurn'"),
+                ("end", template.replace(">noAction<", ">goHome<"), "how DJI flies the finishAction 'goHome'"),
+                ("same", template, ""), ("same_at_sea", above_sea.replace(relative, egm96), ""), ("area", area, "")):
+            with self.subTest(name):
+                self.assertTrue(changed != template or name == "same")
+                archive = io.BytesIO()
+                with zipfile.ZipFile(archive, "w") as made:
+                    made.writestr("wpmz/template.kml", changed)
+                    made.writestr("wpmz/waylines.wpml", waylines)
+                path = self.file(name + ".kmz", archive.getvalue())
+                _, err = altiplan("check", path, "--terrain", TERRAIN, code=3 if words else 0)
+                self.assertIn(words, err)
+                self.assertEqual("template.kml, from which DJI Pilot makes the waylines anew" in err, bool(words))
 
     def test_damaged_files(self):
         whole = {"w.kmz": self.export("wpml")[0], "m.mcap": self.export("mcap")[0],

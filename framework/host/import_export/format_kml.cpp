@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "altiplan/earth.hpp"
 #include "altiplan/error.hpp"
+#include "host/base/words.hpp"
 #include "host/base/xml_text.hpp"
 #include "host/base/zip.hpp"
 #include "host/import_export/format_functions.hpp"
@@ -114,6 +118,63 @@ class KmlWriter {
   Decimals decimals_;
   std::string out_;
 };
+/// Metres between two points, of heights that count from the same.
+double distance(const formats::MissionPoint& a, const formats::MissionPoint& b) {
+  return std::hypot(geodesic_course({a.lon, a.lat}, {b.lon, b.lat}).metres,
+                    a.altitude_m - b.altitude_m);
+}
+
+/// Where a template of DJI's says something else than the waylines, "" where it does not: other
+/// points, or another way to fly. Heights of which one counts from home count from the sea.
+std::string contradiction(const formats::MissionFile& waylines, const formats::MissionFile& templ) {
+  constexpr double kSame = 0.5;  // metres: models of the geoid differ
+  if (templ.route_problem.starts_with("how DJI flies")) {
+    return templ.route_problem;
+  }
+  if (templ.items.empty()) {  // it is of an area, or of a line, from which DJI Pilot makes points
+    return "";
+  }
+  if (templ.items.size() != waylines.items.size()) {
+    return counted(templ.items.size(), "point") + " there, " +
+           std::to_string(waylines.items.size()) + " in the waylines";
+  }
+  const auto above_sea = [&](formats::MissionPoint at) {
+    if (at.frame == AltitudeFrame::home && templ.home) {
+      at.altitude_m += templ.home->altitude_m;
+      at.frame = AltitudeFrame::sea;
+    }
+    return at;
+  };
+  for (std::size_t n = 0; n < templ.items.size(); ++n) {
+    formats::MissionPoint there = templ.items[n].at;
+    formats::MissionPoint here = waylines.items[n].at;
+    if (here.frame != there.frame) {
+      here = above_sea(here);
+      there = above_sea(there);
+    }
+    if (here.frame != there.frame) {
+      return "its heights count from elsewhere than those of the waylines, and how is not known";
+    }
+    if (const double metres = distance(here, there); metres > kSame) {
+      return "point " + std::to_string(n + 1) + " is " + with_decimals(metres, 1) +
+             " m away from that of the waylines";
+    }
+  }
+  return "";
+}
+
+/// The place of take-off is in the template. What contradicts the waylines may be flown in their
+/// place: DJI Pilot makes them anew when the mission is edited.
+void take_template(formats::MissionFile& waylines, const formats::MissionFile& templ) {
+  waylines.home = templ.home;
+  if (const std::string why = contradiction(waylines, templ);
+      !why.empty() && waylines.route_problem.empty()) {
+    waylines.route_problem =
+        "its template.kml, from which DJI Pilot makes the waylines anew when they are edited, "
+        "contradicts them: " +
+        why;
+  }
+}
 }  // namespace
 
 std::string kml_text(const MissionText& text) { return KmlWriter(text, false).text(); }
@@ -156,16 +217,15 @@ formats::MissionFile read_kmz(const std::string& file, const std::string& text) 
     return mission;
   }
   formats::MissionFile mission = read(*waylines, "/waylines.wpml");
-  if (kml) {  // the template, where the place of take-off is
+  if (kml) {
     try {
-      mission.home = read(*kml, "/template.kml").home;
+      take_template(mission, read(*kml, "/template.kml"));
     } catch (const Error& error) {
-      if (std::any_of(mission.items.begin(), mission.items.end(), [](const auto& item) {
-            return item.at.frame == formats::AltitudeFrame::home;
-          })) {
+      if (std::any_of(mission.items.begin(), mission.items.end(),
+                      [](const auto& item) { return item.at.frame == AltitudeFrame::home; })) {
         throw;
       }
-      mission.notes.push_back(std::string("its place of take-off is not read: ") + error.what());
+      mission.notes.push_back(std::string("its template is not read: ") + error.what());
     }
   }
   return mission;

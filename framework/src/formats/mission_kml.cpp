@@ -66,24 +66,39 @@ std::string_view altitude_mode(const pugi::xml_node& geometry) {
   return mode;
 }
 
-/// The height of a waypoint of DJI's WPML, whose Point has none; none of any other Placemark.
-std::optional<MissionPoint> wayline_point(const pugi::xml_node& geometry, const Coordinate& at) {
-  const pugi::xml_node placemark = geometry.parent();
-  const std::string_view height = text_of(placemark, "executeHeight");
+/// The height of a waypoint of DJI's WPML, whose Point has none, and what it counts from: of its
+/// waylines, or of the template from which DJI Pilot makes these. Empty of any other Placemark.
+std::pair<std::string_view, std::string_view> wpml_height(const pugi::xml_node& placemark) {
+  // The first of its Folder, which may hold thousands of others to look through.
+  const auto in_folder = [&](const char* name) { return child(placemark.parent(), name); };
+  const auto text = [](const pugi::xml_node& node) { return trimmed(node.text().get()); };
+  if (const std::string_view height = text_of(placemark, "executeHeight"); !height.empty()) {
+    const std::string_view mode = text(in_folder("executeHeightMode"));
+    if (mode != "WGS84" && mode != "relativeToStartPoint") {
+      throw Error("expected the executeHeightMode relativeToStartPoint or WGS84, found '" +
+                  std::string(mode.substr(0, 40)) + "'");
+    }
+    return {height, mode};
+  }
+  const std::string_view mode = text(child(in_folder("waylineCoordinateSysParam"), "heightMode"));
+  return {mode.empty()                                   ? mode
+          : text_of(placemark, "useGlobalHeight") == "1" ? text(in_folder("globalHeight"))
+                                                         : text_of(placemark, "height"),
+          mode};
+}
+
+std::optional<MissionPoint> wpml_point(const pugi::xml_node& geometry, const Coordinate& at) {
+  const auto [height, mode] = wpml_height(geometry.parent());
   if (height.empty()) {
     return std::nullopt;
   }
-  // The first of its Folder, which may hold thousands of others to look through.
-  const std::string_view mode =
-      trimmed(child(placemark.parent(), "executeHeightMode").text().get());
   const auto [lon, lat] = at.lonlat;
-  MissionPoint point{lon, lat, number_of(height), AltitudeFrame::home};
-  if (mode == "WGS84") {
-    point.altitude_m -= geoid_height(lon, lat);
+  MissionPoint point{lon, lat, number_of(height), AltitudeFrame::ground};
+  if (mode == "relativeToStartPoint") {
+    point.frame = AltitudeFrame::home;
+  } else if (mode == "WGS84" || mode == "EGM96") {
+    point.altitude_m -= mode == "WGS84" ? geoid_height(lon, lat) : 0;
     point.frame = AltitudeFrame::sea;
-  } else if (mode != "relativeToStartPoint") {
-    throw Error("expected the executeHeightMode relativeToStartPoint or WGS84, found '" +
-                std::string(mode.substr(0, 40)) + "'");
   }
   expect_altitude(point.altitude_m);
   return point;
@@ -152,7 +167,9 @@ class KmlReader {
         mission_.home = place;
       }
     } else if (name == "waypointTurnMode") {
-      expect_flown_as_drawn(node, "toPointAndStopWithDiscontinuityCurvature");
+      expect_flown_as_drawn(node, kStops);
+    } else if (name == "useGlobalTurnParam" && trimmed(node.text().get()) == "1") {
+      expect_flown_as_drawn(child(node.parent().parent(), "globalWaypointTurnMode"), kStops);
     } else if (name == "templateType") {
       is_template_ = true;
     } else if (name == "finishAction") {
@@ -211,6 +228,8 @@ class KmlReader {
     std::string without_height;  ///< why, "" if all have one
   };
 
+  static constexpr const char* kStops = "toPointAndStopWithDiscontinuityCurvature";
+
   /// Other words of WPML cut corners or fly on: what is flown is then not what the points say.
   void expect_flown_as_drawn(const pugi::xml_node& node, std::string_view word) {
     const std::string_view found = trimmed(node.text().get());
@@ -239,7 +258,7 @@ class KmlReader {
     const AltitudeFrame frame =
         mode == "relativeToGround" ? AltitudeFrame::ground : AltitudeFrame::sea;
     for (const Coordinate& c : coordinates_of(geometry)) {
-      const std::optional<MissionPoint> wayline = wayline_point(geometry, c);
+      const std::optional<MissionPoint> wayline = wpml_point(geometry, c);
       if (wayline && !points.items.empty() && begins_wayline(geometry) &&
           (wayline->lon != points.items.back().at.lon ||
            wayline->lat != points.items.back().at.lat)) {
