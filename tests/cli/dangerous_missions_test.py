@@ -227,8 +227,28 @@ class Dangerous(PlanCase):
     def test_what_follows_the_end_of_a_file(self):
         arguments = self.arguments("", COPTER, [off(), way(200, 0), HOME], None, {})
         with open(self.folder / "mission.plan", "ab") as file:
-            file.write(b"\0\0")
-        self.assertIn("a byte of value 0", self.call(*arguments, code=3)[1])
+            file.write(b"\n \0\0")
+        self.assertIn("mission.plan:2:2: expected JSON, found a byte of value 0", self.call(*arguments, code=3)[1])
+
+    def test_what_a_ground_station_shows_and_what_is_flown(self):
+        arguments = self.arguments("", COPTER, [off(), way(200, 0), way(300, 0), HOME], None, {})
+        file = self.folder / "mission.plan"
+        plan = json.loads(file.read_text())
+        height = plan["mission"]["items"][1]["params"][6]
+        for keys, words in (
+                ({"Altitude": height + 70}, f"is not flown as QGroundControl shows it: its Altitude is {height + 70:.1f} m"),
+                ({"Altitude": 50, "AltitudeMode": 3, "AMSLAltAboveTerrain": height + 9}, "its AMSLAltAboveTerrain is"),
+                ({"Altitude": height, "AltitudeMode": 2}, "its AltitudeMode is 2, but its frame is 3, which is flown"),
+                ({"Altitude": height, "AltitudeMode": 1, "AMSLAltAboveTerrain": None}, ""),
+                ({"Altitude": height, "AltitudeMode": 0}, "")):
+            with self.subTest(keys):
+                plan["mission"]["items"][1].update(keys)
+                file.write_text(json.dumps(plan))
+                out, _ = self.call(*arguments, code=None)
+                self.assertIn(words, out)
+                self.assertEqual("as QGroundControl shows it" in out, bool(words))
+                for key in keys:
+                    del plan["mission"]["items"][1][key]
 
     def test_items_of_one_number(self):
         arguments = self.arguments("", COPTER, [off(), way(200, 0), way(300, 0), do(177, 2, 2)], None, {})

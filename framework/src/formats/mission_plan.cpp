@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <optional>
+
 #include "json_node.hpp"
 #include "mission_parts.hpp"
 
@@ -58,13 +61,51 @@ void read_complex_item(const Node& item, CommandList& commands) {
   commands.take_complex(items.size());
 }
 
+/// How QGroundControl shows another height than the autopilot gets with an item that was read; ""
+/// where it does not.
+std::string shown_otherwise(const Node& item) {
+  constexpr double kSame = 0.1;  // metres
+  constexpr int kAboveTerrain = 3;
+  const auto number = [&](const char* key) {
+    return item.has(key) && item.at(key).json().is_number() ? std::optional(item.at(key).number())
+                                                            : std::nullopt;
+  };
+  const int mode = int(number("AltitudeMode").value_or(0));
+  const char* key = mode == kAboveTerrain ? "AMSLAltAboveTerrain" : "Altitude";
+  const auto shown = number(key);
+  const std::size_t last = item.at("params").size() - 1;
+  if (shown && last == 6 &&
+      !(std::abs(*shown - item.at("params").at(last).number_or_nan()) <= kSame)) {
+    return std::string("its ") + key + " is " + short_text(*shown) + " m, but its params say " +
+           short_text(item.at("params").at(last).json()) + " m, which is flown";
+  }
+  const int frame = item.at("frame").whole(21);
+  const bool is_sea = frame == 0 || frame == 5;
+  const bool is_home = frame == 3 || frame == 6;
+  const bool is_ground = frame == 10 || frame == 11;
+  if ((is_sea && (mode == 1 || mode == 4)) || (is_home && mode >= 2 && mode <= 4) ||
+      (is_ground && mode >= 1 && mode <= 3)) {
+    return "its AltitudeMode is " + std::to_string(mode) + ", but its frame is " +
+           std::to_string(frame) + ", which is flown";
+  }
+  return "";
+}
+
 void read_items(const Node& items, MissionFile& mission) {
   CommandList commands(mission);
+  std::string shown;
+  std::size_t others = 0;
   for (std::size_t n = 0; n < items.size(); ++n) {
     const Node item = items.at(n);
     const std::string type = item.at("type").text();
     if (type == "SimpleItem") {
       read_simple_item(item, commands);
+      if (const std::string how = shown_otherwise(item); !how.empty()) {
+        others += shown.empty() ? 0 : 1;
+        shown = shown.empty() ? "item " + std::to_string(item.at("doJumpId").whole(1'000'000)) +
+                                    " is not flown as QGroundControl shows it: " + how
+                              : shown;
+      }
     } else if (type == "ComplexItem") {
       read_complex_item(item, commands);
     } else {
@@ -72,6 +113,9 @@ void read_items(const Node& items, MissionFile& mission) {
     }
   }
   commands.finish();
+  if (!shown.empty()) {
+    mission.notes.push_back(shown + (others > 0 ? "; " + std::to_string(others) + " more" : ""));
+  }
 }
 
 Ring read_corners(const Node& corners) {
