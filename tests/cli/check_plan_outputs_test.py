@@ -113,7 +113,7 @@ class CheckPlanOutputs(PlanCase):
         self.assertIn("missing.tif", err)
         (self.folder / "z.json").write_text("{")
         _, err = self.call("mission.plan", "--terrain", TERRAIN, "--airspace", "z.json", code=3)
-        self.assertRegex(err, r"^altiplan: /[^:]*/z.json: is not valid JSON: .* line 1\n$")
+        self.assertRegex(err, r"^altiplan: /[^:]*/z.json:1:2: is not valid JSON: .*\n$")
         _, err = self.call("mission.plan", "--airspace", "zones.json", code=2)
         self.assertIn("--terrain", err)
         self.call("--terrain", TERRAIN, code=2)

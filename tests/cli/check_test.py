@@ -24,7 +24,7 @@ class Check(CliCase):
             route = self.write("wrong.json", text)
             self.call("check", "--route", route, "--scenario", "scenario.yaml", code=3)
         _, err = self.call("check", "scenario.yaml", code=3)
-        self.assertEqual(err, "altiplan: scenario.yaml:1: this is not JSON: expected a result of "
+        self.assertEqual(err, "altiplan: scenario.yaml:1:1: this is not JSON: expected a result of "
                               "altiplan run\n")
         self.call("check", "--route", around, code=2)
         self.call("check", code=2)

@@ -90,8 +90,10 @@ TEST(DamagedMissions, Plans) {
   expect_refused(
       "m.plan", kPlan,
       {{"*", kPlan.substr(0, kPlan.size() / 2),
-        "is not valid JSON: it ends early or has an error in line"},
-       {"*", kPlan.substr(0, 1), "in line 1"},
+        ": is not valid JSON: it ends early or has an error here"},
+       {"*", kPlan.substr(0, 1), "m.plan:1:2: is not valid JSON"},
+       {"*", "{\n \"ä\": 1, ?}", "m.plan:2:10: is not valid JSON"},
+       {"*", "{\"a\": 1,\n\"a\": 2}", "m.plan:2:4: the key \"a\" is given twice"},
        {"*", kPlan + "}", "is not valid JSON"},
        {"*", "[1, 2]", "expected a plan (\"fileType\": \"Plan\"), found [1,2]"},
        {"*", deep, "nested more than 64 levels deep"},

@@ -147,13 +147,13 @@ TEST(JsonText, IsReadAsByTheLibraryWhenChanged) {
   EXPECT_LT(accepted, kTexts / 2);
 }
 
-TEST(JsonText, TellsTheLineOfAnError) {
+TEST(JsonText, TellsTheLineAndColumnOfAnError) {
   const TempFolder folder;
   const auto problem = [&](const std::string& value) {
     return by_us(folder, kBefore + value + kAfter).problem;
   };
-  EXPECT_NE(problem("[1,\n2,\n3,,\n4]").find("in line 4"), std::string::npos);
-  EXPECT_NE(problem("\"a\n\"").find("in line 2"), std::string::npos);
+  EXPECT_NE(problem("[1,\n2,\n3,,\n4]").find(":4:3: is not valid JSON"), std::string::npos);
+  EXPECT_NE(problem("\"a\n\"").find(":2:"), std::string::npos);
   EXPECT_NE(problem("[1e400]").find("too large"), std::string::npos);
   EXPECT_NE(problem("{\"a\": 1, \"a\": 2}").find("\"a\" is given twice"), std::string::npos);
 }

@@ -84,7 +84,9 @@ Json read_json(const std::string& file, const std::string& expected) {
     std::string before(error.byte > 0 ? error.byte - 1 : 0, '\0');
     in.read(before.data(), std::streamsize(before.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    throw Error(file + ":" + std::to_string(line) + ": this is not JSON: expected " + expected);
+    const auto column = before.size() - before.rfind('\n');  // of no line break: from the beginning
+    throw Error(file + ":" + std::to_string(line) + ":" + std::to_string(column) +
+                ": this is not JSON: expected " + expected);
   } catch (const Json::out_of_range&) {
     throw Error(file + ": holds a number that is too large (beyond 1.8e308)");
   }

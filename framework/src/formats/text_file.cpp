@@ -26,7 +26,9 @@ constexpr std::size_t kMaxDepth = 64;
 /// deep that printing or freeing would overflow the stack.
 class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> {
  public:
-  Builder(const std::string& file, const OnItem& on_item) : file_(file), on_item_(on_item) {}
+  using Where = std::function<std::string()>;
+  /// `where` begins messages: "file:LINE:COLUMN: " of what is read.
+  Builder(Where where, const OnItem& on_item) : where_(std::move(where)), on_item_(on_item) {}
   Json take() { return std::move(root_); }
 
   bool Null() { return put(nullptr); }
@@ -46,7 +48,7 @@ class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> 
     const auto [member, is_new] =
         open_.back()->get_ref<Json::object_t&>().try_emplace(std::string(text, length));
     if (!is_new) {
-      throw Error(file_ + ": the key \"" + member->first + "\" is given twice in one object");
+      throw Error(where_() + "the key \"" + member->first + "\" is given twice in one object");
     }
     last_ = &member->second;
     if (open_.size() == 1) {
@@ -71,7 +73,7 @@ class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> 
     return std::isfinite(number) ? put(number) : refuse_large();
   }
   bool refuse_large() const {
-    throw Error(file_ + ": contains a number that is too large (beyond 1.8e308)");
+    throw Error(where_() + "contains a number that is too large (beyond 1.8e308)");
   }
 
  private:
@@ -97,7 +99,7 @@ class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> 
   }
   bool open(Json&& value) {
     if (open_.size() == kMaxDepth) {
-      throw Error(file_ + ": lists and objects are nested more than " + std::to_string(kMaxDepth) +
+      throw Error(where_() + "lists and objects are nested more than " + std::to_string(kMaxDepth) +
                   " levels deep");
     }
     put(std::move(value));
@@ -112,7 +114,7 @@ class Builder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Builder> 
     return true;
   }
 
-  const std::string& file_;
+  const Where where_;
   const OnItem& on_item_;
   std::string key_;  ///< of the document's member that is read
   Json root_;
@@ -127,14 +129,23 @@ std::size_t line_at(const std::string& text, std::size_t offset) {
 }
 
 Json parse_json(const std::string& file, const std::string& text, const OnItem& on_item) {
+  const auto where = [&](std::size_t offset) {
+    const std::size_t begin = offset == 0 ? 0 : text.rfind('\n', offset - 1) + 1;
+    const auto is_character = [](char byte) {
+      return (byte & 0xC0) != 0x80;
+    };  // its first of UTF-8
+    const auto column = std::count_if(text.begin() + std::ptrdiff_t(begin),
+                                      text.begin() + std::ptrdiff_t(offset), is_character);
+    return file + ":" + std::to_string(line_at(text, offset)) + ":" + std::to_string(column + 1) +
+           ": ";
+  };
   if (const auto at = text.find('\0'); at != text.npos) {  // the parser would take it for the end
-    throw Error(file + ":" + std::to_string(line_at(text, at)) +
-                ": expected JSON, found a byte of value 0");
+    throw Error(where(at) + "expected JSON, found a byte of value 0");
   }
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   rapidjson::MemoryStream stream(text.data() + begin, text.size() - begin);
-  Builder builder(file, on_item);
+  Builder builder([&] { return where(begin + stream.Tell()); }, on_item);
   rapidjson::Reader reader;
   if (reader
           .Parse<rapidjson::kParseIterativeFlag | rapidjson::kParseNumbersAsStringsFlag |
@@ -143,8 +154,8 @@ Json parse_json(const std::string& file, const std::string& text, const OnItem& 
     if (reader.GetParseErrorCode() == rapidjson::kParseErrorNumberTooBig) {
       builder.refuse_large();
     }
-    throw Error(file + ": is not valid JSON: it ends early or has an error in line " +
-                std::to_string(line_at(text, begin + reader.GetErrorOffset())));
+    throw Error(where(begin + reader.GetErrorOffset()) +
+                "is not valid JSON: it ends early or has an error here");
   }
   return builder.take();
 }

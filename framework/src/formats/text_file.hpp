@@ -10,8 +10,8 @@ namespace altiplan::formats {
 /// Called with an item of a list that is a member of the document, and with the member's key.
 using OnItem = std::function<void(const std::string& key, nlohmann::json& item)>;
 
-/// Throws Error with the line if the text is not JSON; `file` is for messages. Large files take
-/// half the time if `on_item` empties each item as it is read.
+/// Throws Error with line and column if the text is not JSON; `file` is for messages. Large files
+/// take half the time if `on_item` empties each item as it is read.
 nlohmann::json parse_json(const std::string& file, const std::string& text,
                           const OnItem& on_item = {});
 

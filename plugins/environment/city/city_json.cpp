@@ -21,7 +21,8 @@ using Json = nlohmann::json;
 constexpr int kMaxDepth = 64;
 constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
-Json parse(const std::string& file, const std::string& text) {
+/// `before` lines of the file precede the text.
+Json parse(const std::string& file, const std::string& text, std::size_t before = 0) {
   const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
     if (depth > kMaxDepth) {
       throw Error(file + ": lists and objects are nested more than " + std::to_string(kMaxDepth) +
@@ -32,9 +33,11 @@ Json parse(const std::string& file, const std::string& text) {
   try {
     return Json::parse(text, shallow);
   } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
-    throw Error(file + ": is not valid JSON: it ends early or has an error in line " +
-                std::to_string(1 + std::count(text.begin(), end, '\n')));
+    const std::string read = text.substr(0, std::max<std::size_t>(error.byte, 1) - 1);
+    const auto line = before + 1 + std::size_t(std::count(read.begin(), read.end(), '\n'));
+    throw Error(file + ":" + std::to_string(line) + ":" +
+                std::to_string(read.size() - read.rfind('\n')) +
+                ": is not valid JSON: it ends early or has an error here");
   } catch (const Json::out_of_range&) {
     throw Error(file + ": contains a number that is too large (beyond 1.8e308)");
   }
@@ -267,10 +270,7 @@ Documents documents_of(const std::string& file, const std::string& text) {
     if (one.find_first_not_of(" \t\r") == one.npos) {
       continue;
     }
-    if (line > 0 && !Json::accept(one)) {
-      throw Error(file + ": line " + std::to_string(line + 1) + " is not valid JSON");
-    }
-    Json json = parse(file, one);
+    Json json = parse(file, one, line);
     if (line == 0) {
       all.header = std::move(json);
     } else if (json.is_object() && json.value("type", Json()) == "CityJSONFeature") {

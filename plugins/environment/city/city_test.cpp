@@ -314,7 +314,7 @@ TEST(City, WhatIsWrongIsNamed) {
       {"a.geojson", footprint(R"("height": 1e999)"), "too large"},
       {"a.geojson", footprint(""), "'hall': has no 'height'"},
       {"a.geojson", footprint(R"("height": 3)", 190), "expected longitude"},
-      {"a.geojson", "[1, 2", "is not valid JSON"},
+      {"a.geojson", "[1,\n2", "a.geojson:2:2: is not valid JSON"},
       {"a.geojson", "lat0 37.8", "is not valid JSON"}};
   for (const Case& one : cases) {
     const auto file = folder.write(one.name, one.text);

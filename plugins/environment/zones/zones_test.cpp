@@ -327,7 +327,7 @@ TEST(Zones, RefusesBadFilesWithThePlace) {
       "surface"));
   EXPECT_TRUE(says(refused("type", feature("[]", "{}", "Curve")), "Curve"));
   EXPECT_TRUE(says(refused("cut", "{\n\"type\":\n"),
-                   "not valid JSON: it ends early or has an error in line 3"));
+                   ":3:1: is not valid JSON: it ends early or has an error here"));
   EXPECT_TRUE(says(refused("large", "[1e400]"), "a number that is too large"));
   EXPECT_TRUE(says(refused("deep", std::string(100, '[') + std::string(100, ']')),
                    "nested more than 64 levels deep"));
