@@ -6,6 +6,7 @@ import json
 import math
 import os
 import re
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -51,9 +52,10 @@ class PageGround(PlanCase):
                     for lon, lat, _ in POINTS)
         return (255 * numpy.minimum(light, 1)).astype(numpy.uint8)
 
-    def view(self, file, *arguments, code=0):
+    def view(self, file, *arguments, code=0, path=os.environ["PATH"]):
         done = subprocess.run([PROGRAM, "view", *(arguments or ("mission.plan", "--terrain", TERRAIN, "-o", "page.html")),
-                               "--basemap", file], cwd=self.folder, capture_output=True, text=True, timeout=600)
+                               "--basemap", file], cwd=self.folder, capture_output=True, text=True, timeout=600,
+                              env={**os.environ, "PATH": path})
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stderr
 
@@ -139,9 +141,15 @@ class PageGround(PlanCase):
         return "palette.tif"
 
     def test_a_large_image_is_thinned(self):
-        self.gdal("gdal_translate", "-outsize", "20000", "20000", "-co", "COMPRESS=DEFLATE", "-co", "TILED=YES",
-                  self.image("small.tif", [numpy.full((64, 64), 128, numpy.uint8)]), "large.tif")
-        self.view("large.tif")
+        self.gdal("gdal_create", "-of", "GTiff", "-outsize", "40000", "40000", "-bands", "1", "-co", "SPARSE_OK=TRUE", "-co",
+                  "TILED=YES", "-co", "BLOCKXSIZE=4096", "-co", "BLOCKYSIZE=4096", *PLACED, "large.tif")
+        said = self.folder / "said"  # what is read of it: all of 10^10 pixels take minutes
+        said.mkdir()
+        (said / "gdal_translate").write_text(f'#!/bin/sh\necho "$@" >> {said}/log\nexec {shutil.which("gdal_translate")} "$@"\n')
+        (said / "gdal_translate").chmod(0o755)
+        self.view("large.tif", path=f"{said}:{os.environ['PATH']}")
+        read = re.search(r"-outsize (\d+) (\d+) .*large.tif", (said / "log").read_text())
+        self.assertLess(max(map(int, read.groups())), 25000, read[0])
         scene = self.scene()
         self.assertLessEqual(max(self.pixels(scene).shape), 4096)
         self.assertLess(len(scene["basemap"]["image"]), 1e6)
@@ -155,13 +163,27 @@ class PageGround(PlanCase):
         vector.commit()
         vector.close()
         grey = [numpy.full((8, 8), 9, numpy.uint8)]
+        self.gdal("gdal_translate", "-of", "MBTiles", self.image("whole.tif", [numpy.full((2000, 2000), 120, numpy.uint8)] * 3),
+                  "whole.mbtiles")
+        whole = (self.folder / "whole.mbtiles").read_bytes()
+        third = len(whole) // 3
+        for name, data in (("empty", b""), ("half", whole[:third]), ("middle", whole[:third] + b"x" * third + whole[2 * third:])):
+            (self.folder / f"{name}.mbtiles").write_bytes(data)
+        for name, change in (("no_tables", "DROP TABLE tiles"), ("pictures", "UPDATE tiles SET tile_data = x'0102'"),
+                             ("one_picture", "UPDATE tiles SET tile_data = substr(tile_data, 1, 100) WHERE rowid = 5")):
+            shutil.copy(self.folder / "whole.mbtiles", self.folder / f"{name}.mbtiles")
+            with sqlite3.connect(self.folder / f"{name}.mbtiles") as tiles:
+                tiles.execute(change)
+            tiles.close()
         (self.folder / "text.tif").write_text("no image")
         (self.folder / "cut.tif").write_bytes((self.folder / self.image("whole.tif", [self.spots()])).read_bytes()[:20000])
         kind = "expected a GeoTIFF image, or MBTiles of PNG or JPEG tiles"
         nowhere = "is nowhere on the Earth: it lacks a coordinate system or its corners"
         for file, said in (
-                ("text.tif", kind), ("vector.mbtiles", kind), ("mission.plan", kind), ("missing.tif", "there is no such file"),
-                (".", "is a folder, expected a file"), ("/vsicurl/http://localhost/a.tif", "there is no such file"),
+                ("text.tif", kind), ("vector.mbtiles", kind), ("mission.plan", kind), ("empty.mbtiles", kind), ("no_tables.mbtiles", kind),
+                ("half.mbtiles", "gdalinfo: database disk image is malformed"),
+                ("middle.mbtiles", "gdalinfo: In ExecuteSQL(): sqlite3_step("), ("pictures.mbtiles", "gdalwarp: Cannot parse tile data"),
+                ("one_picture.mbtiles", "gdalwarp: libpng: Read Error"),
                 (self.image("heights.tif", [numpy.full((8, 8), 900, numpy.int16)]), "expected an image of bytes, found numbers (Int16)"),
                 (self.image("bare.tif", grey, "-co", "PROFILE=BASELINE"), nowhere),
                 (self.image("no_corners.tif", grey, "-a_srs", "EPSG:4326"), nowhere),
@@ -173,6 +195,9 @@ class PageGround(PlanCase):
             self.assertEqual(err.count("\n"), 1, err)
             self.assertTrue(err.startswith(f"altiplan: {file}: {said}"), err)
             self.assertFalse((self.folder / "page.html").exists())
+        for file, said in (("missing.tif", "there is no such file"), (".", "is a folder, expected a file"),
+                           ("/vsicurl/http://localhost/a.tif", "there is no such file")):
+            self.assertEqual(self.view(file, code=3), f"altiplan: --basemap {file}: {said}\n")
         self.image("spots.tif", [self.spots()])
         self.assertIn("--basemap is shown by -o, --png and --mp4",
                       self.view("spots.tif", "mission.plan", "--terrain", TERRAIN, "--svg", "map.svg", code=2))

@@ -23,6 +23,9 @@ using Texts = std::vector<std::string>;
 
 /// What every browser takes as one image on the ground.
 constexpr double kMaxPixels = 4096;
+/// Of a finer image so many a pixel are read along each side, from its overviews if it has any:
+/// filtering all of 10^10 takes minutes.
+constexpr double kReadPerPixel = 4;
 /// Along each side the places that are brought over exactly; GDAL interpolates between them, by
 /// thin plate splines.
 constexpr int kPlaces = 10;
@@ -52,9 +55,16 @@ class Warp {
     translate.insert(translate.end(), kInputs.begin(), kInputs.end());
     const Texts bands = colours(info.at("bands"));
     translate.insert(translate.end(), bands.begin(), bands.end());
+    const double metres = metres_per_pixel(info);
+    if (const double share = kReadPerPixel * own_metres(info) / metres; share < 1) {
+      translate.emplace_back("-outsize");
+      for (const Json& pixels : info.at("size")) {
+        translate.push_back(std::to_string(std::lround(std::ceil(share * pixels.get<double>()))));
+      }
+    }
     translate.insert(translate.end(), {fs::absolute(file_), in_folder("source.vrt")});
     run(translate);
-    write_file(in_folder("place.vrt"), empty_image(metres_per_pixel(info)));
+    write_file(in_folder("place.vrt"), empty_image(metres));
     run({"gdal_translate", "-q", in_folder("place.vrt"), in_folder("warped.tif")});
     run({"gdalwarp", "-q", "-r", "bilinear", "-to", "DST_METHOD=GCP_TPS", in_folder("source.vrt"),
          in_folder("warped.tif")});
@@ -72,7 +82,8 @@ class Warp {
  private:
   std::string in_folder(const char* name) const { return folder_.path() / name; }
 
-  /// What a program of GDAL's prints. Throws Error with its first complaint.
+  /// What a program of GDAL's prints. Throws Error with its first complaint: tiles that it cannot
+  /// read are none for its exit code.
   std::string run(Texts arguments) const {
     const std::string name = arguments.front();
     arguments.front() = program_of(name.c_str());
@@ -84,14 +95,29 @@ class Warp {
     while (program.receive(printed, end)) {
     }
     const std::optional<int> code = program.ended(end);
-    if (code != 0) {
-      const std::string said = formats::read_file(errors);
+    const std::string said = first_complaint(formats::read_file(errors));
+    if (code != 0 || !said.empty()) {
       throw Error(file_ + ": " + name + ": " +
                   (!code          ? "not done within 10 minutes"
                    : said.empty() ? "ended early"
-                                  : said.substr(0, said.find('\n'))));
+                                  : said));
     }
     return printed;
+  }
+
+  /// Of "ERROR 1: what is wrong" what is wrong; "" without errors.
+  static std::string first_complaint(const std::string& said) {
+    const std::size_t error = said.find("ERROR ");
+    if (error == said.npos) {
+      return "";
+    }
+    const std::size_t begin = std::min(said.find(": ", error), said.size() - 2) + 2;
+    const std::size_t end = said.find('\n', begin);
+    const std::size_t more = said.find_first_not_of(' ', std::min(end, said.size() - 1) + 1);
+    const std::string words = said.substr(begin, end - begin);
+    return words.ends_with(':') && more != said.npos
+               ? words + " " + said.substr(more, said.find('\n', more) - more)
+               : words;
   }
 
   Json info_of(const std::string& image, const Texts& options) const {
@@ -101,7 +127,10 @@ class Warp {
     std::string printed;
     try {
       printed = run(arguments);
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      if (std::string(error.what()).find("not recognized as a supported") == std::string::npos) {
+        throw;
+      }
       throw Error(file_ + ": expected a GeoTIFF image, or MBTiles of PNG or JPEG tiles");
     }
     Json info = parse_json(printed);
@@ -149,12 +178,16 @@ class Warp {
     return info.at("wgs84Extent").at("coordinates").at(0).at(nth).get<LonLat>();
   }
 
-  /// The mean along the west side of the file, but large enough for the box.
+  /// The mean of a pixel along the west side of the file.
+  static double own_metres(const Json& info) {
+    return geodesic_course(corner(info, 0), corner(info, 1)).metres /
+           info.at("size").at(1).get<double>();
+  }
+
+  /// The same, but large enough for the box.
   double metres_per_pixel(const Json& info) const {
     const Vec3 size = box_.max - box_.min;
-    const double own = geodesic_course(corner(info, 0), corner(info, 1)).metres /
-                       info.at("size").at(1).get<double>();
-    return std::max(std::max(size.x(), size.y()) / kMaxPixels, own);
+    return std::max(std::max(size.x(), size.y()) / kMaxPixels, own_metres(info));
   }
 
   static std::string covered(const Json& info) {
@@ -233,7 +266,7 @@ Box area_of(const Json& scene) {
 
 Basemap::Basemap(std::string file) : file_(std::move(file)) {
   if (const std::string why = formats::why_unreadable(file_); !why.empty()) {
-    throw formats::InputError(file_, why);
+    throw formats::InputError("--basemap " + file_, why);
   }
   program_of("gdalwarp");
 }
