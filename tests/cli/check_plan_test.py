@@ -21,6 +21,14 @@ class CheckPlan(PlanCase):
         out, _ = self.check(high, "--min-agl", "100", code=0)
         self.assertRegex(out, r"^pass: mission.plan, 4 waypoints, [0-9.]+ km, at least [0-9.]+ m")
 
+    def test_a_zone_that_closes_nothing_is_named(self):
+        """From the ground, at 240 m and higher, up to 100 m above sea level: nothing is closed."""
+        high = [[lon, lat, 1500] for lon, lat, _ in POINTS]
+        for ceiling, is_named in ((100, True), (1400, False)):
+            self.zones("z.json", self.around(*POINTS[2][:2]), ceiling)
+            out, _ = self.check(high, "--airspace", "z.json", code=0)
+            self.assertEqual("nothing is closed, as the ceiling is below the floor, or the ground, there: 'Z" in out, is_named, out)
+
     def test_what_cures_a_plan_makes_it_pass(self):
         low = [[lon, lat, 1500] for lon, lat, _ in POINTS]
         low[2][2] = 500

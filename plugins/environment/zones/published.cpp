@@ -64,6 +64,23 @@ class Converter {
       notes.push_back(std::to_string(beyond_) +
                       " volumes with limits above ground closed at all heights beyond the ground");
     }
+    std::vector<std::string> open;
+    std::size_t partly = 0;
+    for (const auto& [name, places] : empty_) {
+      if (places.closed == 0) {
+        open.push_back(name);
+      }
+      partly += places.closed > 0 && places.open > 0;
+    }
+    if (!open.empty()) {
+      notes.push_back(
+          "nothing is closed, as the ceiling is below the floor, or the ground, there: " +
+          formats::names_text(open));
+    }
+    if (partly > 0) {
+      notes.push_back("the ceiling is below the floor, or the ground, over parts of " +
+                      std::to_string(partly) + " zones");
+    }
     return notes;
   }
 
@@ -89,15 +106,52 @@ class Converter {
   }
 
   void close(const std::string& name, Prism prism) {
+    ++empty_[name].closed;
     prism.floor = -kInfinity;
     prism.ceiling = kInfinity;
     zones.push_back({name, {std::move(prism)}, closed});
+  }
+
+  /// Places spread over a zone at which something is closed, or nothing.
+  struct Places {
+    std::size_t closed = 0;
+    std::size_t open = 0;
+  };
+
+  /// Where the ceiling is not above the floor and the ground.
+  void look_for_empty(const std::string& name, const GroundPrism& limits) {
+    constexpr double kAlong = 8;
+    std::vector<Vec3> places;
+    for (const auto& [x, y] : limits.prism.outline) {
+      places.emplace_back(x, y, 0);
+    }
+    const Shape outline = Prism{limits.prism.outline, limits.prism.holes};
+    const Box area = bounds(outline);
+    for (double east = 0.5; east < kAlong; ++east) {
+      for (double north = 0.5; north < kAlong; ++north) {
+        const Vec3 place(area.min.x() + east / kAlong * (area.max.x() - area.min.x()),
+                         area.min.y() + north / kAlong * (area.max.y() - area.min.y()), 0);
+        if (signed_distance(outline, place) < 0) {
+          places.push_back(place);
+        }
+      }
+    }
+    Places& found = empty_[name];
+    for (const Vec3& place : places) {
+      const auto ground = site_.before->ground(place.x(), place.y());
+      const double floor =
+          std::max(limits.prism.floor, ground.value_or(0) + std::max(0.0, limits.above_floor));
+      const double ceiling =
+          std::min(limits.prism.ceiling, ground.value_or(0) + limits.above_ceiling);
+      ++(!ground || ceiling > floor ? found.closed : found.open);
+    }
   }
 
   /// Closed at all heights where the ground is not known.
   void add_part(const std::string& name, const GroundPrism& limits) {
     if (!limits.follows_ground()) {
       zones.push_back({name, limits, closed});
+      look_for_empty(name, limits);
       return;
     }
     if (!site_.before->has_ground()) {
@@ -112,6 +166,7 @@ class Converter {
         GroundPrism above = limits;
         above.prism = within;
         above.slope = slope;
+        look_for_empty(name, above);
         zones.push_back({name, std::move(above), closed});
       } else {
         ++without_ground_;
@@ -131,6 +186,7 @@ class Converter {
   std::size_t levels_ = 0;
   std::size_t without_ground_ = 0;
   std::size_t beyond_ = 0;
+  std::map<std::string, Places> empty_;  ///< by the name of a zone
 };
 
 bool has_times(const Zone& zone) {

@@ -236,6 +236,38 @@ TEST_F(Published, ManyZonesAnswerAsEachOfThem) {
   }
 }
 
+TEST_F(Published, AFloorAboveTheCeilingIsSaid) {
+  const char* kNothing = "nothing is closed, as the ceiling is below the floor, or the ground";
+  const char* kPartly = "or the ground, over parts of 1 zones";
+  double low = kInfinity;
+  double high = -kInfinity;
+  for (double x = 500; x <= 900; x += 10) {
+    for (double y = 500; y <= 900; y += 10) {
+      low = std::min(low, *posts_->field().at(x, y));
+      high = std::max(high, *posts_->field().at(x, y));
+    }
+  }
+  ASSERT_GT(high - low, 5);
+  const auto ceiling_at = [](double z) { return std::to_string(int(std::floor(z))) + " m MSL"; };
+  const Corners corners{{500, 500}, {900, 500}, {900, 900}, {500, 900}};
+  const auto layer = [&](const std::string& floor, const std::string& ceiling) {
+    return zones(openair("R", "Ridge", floor, ceiling, corners));
+  };
+  const auto none = layer("100 m AGL", ceiling_at(low + 99));
+  EXPECT_TRUE(says(*none, kNothing));
+  EXPECT_TRUE(says(*none, "Ridge"));
+  EXPECT_FALSE(none->blocked({700, 700, -100}, {700, 700, 2000}, 0));
+  const auto partly = layer("100 m AGL", ceiling_at((low + high) / 2 + 100));
+  EXPECT_FALSE(says(*partly, kNothing));
+  EXPECT_TRUE(says(*partly, kPartly));
+  for (const auto& closed : {layer("100 m AGL", ceiling_at(high + 110)), layer("GND", "150 m AGL"),
+                             layer("100 m AGL", "150 m AGL"), layer("0 m MSL", "50 m AGL")}) {
+    EXPECT_FALSE(says(*closed, "the ceiling is below the floor"));
+  }
+  EXPECT_TRUE(says(*layer("GND", ceiling_at(low - 1)), kNothing));
+  EXPECT_TRUE(says(*layer(ceiling_at(high + 60), "50 m AGL"), kNothing));
+}
+
 TEST_F(Published, IsClosedWithoutGround) {
   const std::string text = openair("R", "Zone", "50 m AGL", "100 m AGL", kConcave);
   const auto bare = zones(text, "", site(false));
