@@ -599,6 +599,24 @@ TEST(FlownMission, APlaneTakesOffAnywhereWithinTenDegrees) {
   }
 }
 
+// Flown at a slope of 20 %: from 60 m above the ground down to 0.4 m.
+TEST(FlownMission, ASlowCopterLosesTheGroundOnItsCircle) {
+  MissionCommand circle = command(18, 230, 0, 60, 10);
+  circle.params = {1, 0, 200, 0};
+  const auto lowest = [&](double rate) {  // above the ground
+    const FlownMission flown = fly(
+        {command(22, 0, 0, 60), order(178, {2, rate, -1, 0}), order(178, {3, rate, -1, 0}), circle},
+        kCopter, {}, rising(0.2));
+    double height = kInfinity;
+    for (const Strip& strip : part(flown, "its circle").strips) {
+      height = std::min(height, strip.from.z() - kHome - 0.2 * strip.from.x());
+    }
+    return height;
+  };
+  EXPECT_LT(lowest(0.3), 0.5);
+  EXPECT_GT(lowest(2.5), 45);
+}
+
 TEST(FlownMission, WhatFollowsAnEndlessItemIsFlown) {
   const std::vector<MissionCommand> landing = {command(16, 900, 0, 60), command(16, 500, 0, 40),
                                                command(21, 0, 0, 0)};

@@ -63,9 +63,9 @@ std::array<double, 2> Flight::known_grounds(const Eigen::Vector2d& at) const {
   return {own, grid_ground(at) + *grid_shift_};
 }
 
-// AP_Terrain::calculate_grid_info and height_amsl. Nodes lie in blocks of 24 by 28 cells, equally far
-// apart in metres from the block's corner; places count in metres from whole degrees. Since degrees
-// of longitude get shorter, a place is read from nodes up to 11 m west or east of it.
+// AP_Terrain::calculate_grid_info and height_amsl. Nodes lie in blocks of 24 by 28 cells, equally
+// far apart in metres from the block's corner; places count in metres from whole degrees. Since
+// degrees of longitude get shorter, a place is read from nodes up to 11 m west or east of it.
 double Flight::grid_ground(const Eigen::Vector2d& at) const {
   constexpr double kMetres = 111318.84502145034;  // a degree
   constexpr int kNorth = 24;

@@ -133,11 +133,12 @@ class Hover {
   std::array<double, 2> heights_at(const Eigen::Vector2d& place) const;
   void follow_ground(const Destination& to);
   /// How far below and above it is on a circle above the ground.
-  std::array<double, 2> lags_on_circle(const Eigen::Vector2d& centre, double radius,
-                                       double v) const;
+  std::array<double, 2> lags_on_circle(const Eigen::Vector2d& centre, double radius, double v,
+                                       double turns, const std::array<double, 2>& begun) const;
   /// The slowest and the fastest, also of what the mission has ordered no rates for.
   std::array<double, 2> climb_rates() const;
   std::array<double, 2> sink_rates() const;
+  double climb_acceleration() const;  ///< m/s², above the ground, of ArduPilot's
   /// Adds what lies within a distance of a leg, level with it.
   void add_beside(const Destination& to, double distance);
   double reach() const { return reach(acceptance_m); }  ///< of the present place

@@ -227,8 +227,40 @@ bool Walker::goes_on_when_told(std::size_t n, const std::string& what) {
   return leads_on;
 }
 
-bool Walker::carry_out(std::size_t n) {
+void Walker::note_lost_orders(std::size_t n) {
   const Task task = task_of(n);
+  const bool may_be_there = task == Task::waypoint || task == Task::spline;
+  if (orders_.size() > 1 && may_be_there && has_flown_ && commands_[n].has_position()) {
+    const Destination to = destination(n);
+    const double accepts = is_winged_
+                               ? 2 * std::max({wing_->farthest_turn(to.low), commands_[n].params[1],
+                                               parameter("WP_RADIUS")})
+                           : autopilot_.is_copter() ? parameter("WP_RADIUS_M")
+                                                    : 2;
+    const double above = is_winged_ ? 0 : std::max(to.low - hover_->high, hover_->low - to.high);
+    if (std::hypot((to.at - here()).norm(), std::max(above, 0.0)) <= accepts) {
+      for (std::size_t i = 1; i < orders_.size(); ++i) {
+        const Task order = task_of(orders_[i]);
+        if (order == Task::speed || order == Task::set_home || order == Task::fence ||
+            order == Task::parachute || order == Task::engine) {
+          give_up(orders_[i],
+                  "may be lost: the next item is reached at once, and ArduPilot starts one order "
+                  "before it alone");
+        }
+      }
+    }
+  }
+  orders_.clear();
+}
+
+bool Walker::carry_out(std::size_t n) {
+  constexpr int kLastOfItems = 95;  // MAV_CMD_NAV_LAST
+  const Task task = task_of(n);
+  if (commands_[n].number > kLastOfItems) {
+    orders_.push_back(n);
+  } else if (!is_px4()) {
+    note_lost_orders(n);
+  }
   const auto& p = commands_[n].params;
   switch (task) {
     case Task::take_off:

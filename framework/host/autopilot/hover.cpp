@@ -8,20 +8,20 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kGroundStep = 10;  // metres between heights above the ground
-constexpr double kTerrainMargin =
-    10;  // ArduPilot slows down before it is this far off (WP_TER_MARGIN)
+constexpr double kGroundStep = 10;    // metres between heights above the ground
 constexpr double kCornerSpacing = 4;  // metres between the chords of a corner
 constexpr double kAtEdge = 3;         // metres within which it is on a circle
 // Metres that it swings out of a circle above the ground, and below it: as seen in ArduPilot's
 // simulation (docs/decisions/0006).
 constexpr double kCircleSwing = 2.5;
-constexpr double kAtHome = 10;     // metres within which a return only goes up and down
-constexpr double kTouchDown = 10;  // metres above the ground from which it sinks slowly
+constexpr double kTerrainMargin = 10;  // metres: WP_TER_MARGIN
+constexpr double kMaxRounds = 40;      // of a circle above the ground, that are followed
+constexpr double kAtHome = 10;         // metres within which a return only goes up and down
+constexpr double kTouchDown = 10;      // metres above the ground from which it sinks slowly
 
-/// The height of the ground as ArduPilot's copter follows it: within its rates, with accelerations
-/// of 1 m/s² (WP_ACC_Z).
+/// The height of the ground as ArduPilot's copter follows it: within its rates and accelerations.
 struct LaggingGround {
+  double mps2;
   double z = 0;
   double rate = 0;
 
@@ -31,7 +31,7 @@ struct LaggingGround {
     const double dt = seconds / steps;
     for (int n = 0; n < steps; ++n) {
       const double wanted = std::clamp(ground - z, -sink, climb);
-      rate += std::clamp(wanted - rate, -dt, dt);
+      rate += std::clamp(wanted - rate, -mps2 * dt, mps2 * dt);
       z += rate * dt;
     }
     z = std::clamp(z, ground - margin, ground + margin);
@@ -73,6 +73,10 @@ std::array<double, 2> Hover::climb_rates() const {
 std::array<double, 2> Hover::sink_rates() const {
   const double own = flight_.parameter(sink_parameter(flight_.autopilot()));
   return {std::min(own, sink_mps[0]), std::max(own, sink_mps[1])};
+}
+
+double Hover::climb_acceleration() const {
+  return flight_.autopilot().is_copter() ? flight_.parameter("WP_ACC_Z") : 1;
 }
 
 double Hover::reach(double acceptance) const {
@@ -207,7 +211,12 @@ void Hover::follow_ground(const Destination& to) {
   const std::array<double, 2> begun = flight_.known_grounds(at);
   const double starts[] = {low, high};
   // Of the fastest flight, at the slowest rates and at the fastest.
-  LaggingGround lagging[][2] = {{{begun[0]}, {begun[0]}}, {{begun[1]}, {begun[1]}}};
+  const double mps2 = climb_acceleration();
+  // ArduPilot's copter slows down before it is this far off.
+  const double margin =
+      flight_.autopilot().is_copter() ? flight_.parameter("WP_TER_MARGIN") : kTerrainMargin;
+  LaggingGround lagging[][2] = {{{mps2, begun[0]}, {mps2, begun[0]}},
+                                {{mps2, begun[1]}, {mps2, begun[1]}}};
   Vec3 before = at_height(at, low);
   double before_high = high;
   for (int n = 1; n <= steps; ++n) {
@@ -220,7 +229,8 @@ void Hover::follow_ground(const Destination& to) {
       double lag[2];
       for (int rate : {0, 1}) {
         lag[rate] = lagging[ground][rate].follow(grounds[ground], length / steps / speed_mps[1],
-                                                 sink_mps[rate], climb_mps[rate], kTerrainMargin);
+                                                 sink_mps[rate], climb_mps[rate],
+                                                 margin > 0 ? margin : kInfinity);
       }
       for (const double start : starts) {
         const double before_above = start - begun[ground];
@@ -329,31 +339,56 @@ void Hover::arc(std::size_t command, const Destination& to, double angle) {
   left_.reset();
 }
 
-// It does not slow down there.
-std::array<double, 2> Hover::lags_on_circle(const Eigen::Vector2d& centre, double radius,
-                                            double v) const {
+// It does not slow down there, and may begin anywhere, as late as it comes.
+std::array<double, 2> Hover::lags_on_circle(const Eigen::Vector2d& centre, double radius, double v,
+                                            double turns,
+                                            const std::array<double, 2>& begun) const {
   constexpr int kSides = 48;
-  constexpr int kRounds = 3;  // the first ones bring it into step
-  std::array<double, 2> lags{0, 0};
+  constexpr int kBegins = 12;
+  const double mps2 = climb_acceleration();
+  std::array<double, 2> lags = begun;
   const auto sinks = sink_rates();
   const auto climbs = climb_rates();
-  for (const double sense : {-1.0, 1.0}) {
-    LaggingGround lagging[2][2];
-    for (int side = 0; side <= kRounds * kSides; ++side) {
-      const double angle = sense * 2 * kPi * side / kSides;
-      const auto grounds = flight_.known_grounds(
-          centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-      for (int ground : {0, 1}) {
-        for (int rate : {0, 1}) {
-          LaggingGround& one = lagging[ground][rate];
-          one.z = side == 0 ? grounds[ground] : one.z;
-          const double z = one.follow(grounds[ground], 2 * kPi * radius / kSides / v, sinks[rate],
-                                      climbs[rate], kInfinity);
-          lags[0] = std::max(lags[0], grounds[ground] - z);
-          lags[1] = std::max(lags[1], z - grounds[ground]);
+  std::array<std::array<double, 2>, kSides> grounds;
+  for (int side = 0; side < kSides; ++side) {
+    const double angle = 2 * kPi * side / kSides;
+    grounds[side] =
+        flight_.known_grounds(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  const double side_s = 2 * kPi * radius / kSides / v;
+  const int sides = kSides * int(std::ceil(std::min(turns, kMaxRounds)) + 1);
+  const auto fly = [&](int ground, int begin, int sense, double off, int rate) {
+    LaggingGround lagging{mps2, grounds[begin][ground] + off};
+    double before = 0;  // the greatest lag of the round before
+    double now = 0;
+    for (int side = 1; side <= sides; ++side) {
+      const double here = grounds[(begin + sense * side + kSides * sides) % kSides][ground];
+      const double lag = lagging.follow(here, side_s, sinks[rate], climbs[rate], kInfinity) - here;
+      lags = {std::max(lags[0], -lag), std::max(lags[1], lag)};
+      now = std::max(now, std::abs(lag));
+      if (side % kSides == 0) {
+        if (side > 2 * kSides && now <= before) {
+          return true;  // in step
+        }
+        before = std::exchange(now, 0);
+      }
+    }
+    return turns <= kMaxRounds;
+  };
+  bool is_known = true;
+  for (int begin = 0; begin < kSides; begin += kSides / kBegins) {
+    for (const int ground : {0, 1}) {
+      for (const int sense : {-1, 1}) {
+        for (const double off : {-begun[0], begun[1]}) {
+          for (const int rate : {0, 1}) {
+            is_known = fly(ground, begin, sense, off, rate) && is_known;
+          }
         }
       }
     }
+  }
+  if (!is_known) {
+    return {kInfinity, kInfinity};
   }
   return lags;
 }
@@ -380,7 +415,18 @@ void Hover::circle(std::size_t command, const Destination& centre, double radius
   const double inner = is_from_centre ? 0 : radius;
   std::array<double, 2> lags{0, 0};
   if (centre.above_ground) {
-    lags = lags_on_circle(centre.at, radius, v);
+    // Above and below the height above the ground with which it comes.
+    const auto grounds = flight_.known_grounds(edge.at);
+    const auto [lowest, highest] = std::minmax(grounds[0], grounds[1]);
+    lags = lags_on_circle(centre.at, radius, v, turns,
+                          {std::max(highest + *centre.above_ground - low, 0.0),
+                           std::max(high - lowest - *centre.above_ground, 0.0)});
+    if (!std::isfinite(lags[0])) {
+      flight_.remark(Remark::Weight::not_judged, "not_judged", command,
+                     "so many turns above the ground, which it does not follow fast enough, are "
+                     "not judged");
+      lags = {0, 0};
+    }
     for (double& lag : lags) {
       lag += kCircleSwing;
     }
@@ -431,7 +477,10 @@ void Hover::land(std::size_t command, const char* what) {
                       : flight_.autopilot().is_copter() ? flight_.parameter("LAND_SPD_MS")
                                                         : flight_.parameter("Q_LAND_FINAL_SPD");
   const double slow = is_px4 ? std::min(fast, flight_.parameter("MPC_LAND_CRWL")) : fast;
-  const auto [slow_sink, fast_sink] = sink_rates();
+  auto [slow_sink, fast_sink] = sink_rates();
+  if (flight_.autopilot().is_copter() && !is_px4 && flight_.parameter("LAND_SPD_HIGH_MS") > 0) {
+    slow_sink = fast_sink = flight_.parameter("LAND_SPD_HIGH_MS");
+  }
   const double above = height - last;
   flight_.take({above / fast_sink + last / 2 / fast, above / slow_sink + last / slow + 5});
   low = high = foot;

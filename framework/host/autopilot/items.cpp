@@ -255,7 +255,7 @@ bool Walker::circle_wing(std::size_t n, const Destination& to) {
   stay.turns = task == Task::loiter_turns ? command.params[0] : 0;
   stay.seconds = task == Task::loiter_time ? command.params[0] : 0;
   stay.until_high = task == Task::loiter_to_altitude;
-  wing_->circle(n, "its circle", to, radius, clockwise, stay, leg.next, command.params[3] == 1);
+  wing_->circle(n, "its circle", to, radius, clockwise, stay, leg.next, command.params[3] > 0);
   if (task == Task::loiter_forever) {
     flight_.take({0, kInfinity});
     return !goes_on_when_told(n, "stays here for ever");

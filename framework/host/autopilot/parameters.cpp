@@ -37,6 +37,8 @@ const Row kRows[] = {
     {"WP_SPD_UP", {2.5, kNone, kNone, kNone}, "WPNAV_SPEED_UP", kCm},
     {"WP_SPD_DN", {1.5, kNone, kNone, kNone}, "WPNAV_SPEED_DN", kCm},
     {"WP_ACC", {2.5, kNone, kNone, kNone}, "WPNAV_ACCEL", kCm},
+    {"WP_ACC_Z", {1, kNone, kNone, kNone}, "WPNAV_ACCEL_Z", kCm},
+    {"WP_TER_MARGIN", {10, kNone, kNone, kNone}, "WPNAV_TER_MARGIN", 1},
     {"WP_JERK", {1, kNone, kNone, kNone}, "WPNAV_JERK", 1},
     {"ATC_INPUT_TC", {0.15, kNone, kNone, kNone}},
     {"RTL_ALT_M", {15, kNone, kNone, kNone}, "RTL_ALT", kCm},
@@ -44,6 +46,7 @@ const Row kRows[] = {
     {"RTL_CONE_SLOPE", {3, kNone, kNone, kNone}},
     {"RTL_ALT_TYPE", {0, kNone, kNone, kNone}},
     {"LAND_SPD_MS", {0.5, kNone, kNone, kNone}, "LAND_SPEED", kCm},
+    {"LAND_SPD_HIGH_MS", {0, kNone, kNone, kNone}, "LAND_SPEED_HIGH", kCm},
     {"MIS_OPTIONS", {0, kNone, kNone, kNone}},
     {"DISARM_DELAY", {10, kNone, kNone, kNone}},
     {"RALLY_LIMIT_KM", {0.3, 5, kNone, kNone}},
@@ -118,7 +121,8 @@ constexpr std::string_view kMayBeZero[] = {
     "ALT_SLOPE_MIN",   "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
     "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
     "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
-    "MIS_OPTIONS",     "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC"};
+    "MIS_OPTIONS",     "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",
+    "LAND_SPD_HIGH_MS"};
 
 void expect_possible(const Row& row, const ParameterValue& given) {
   const double value = given.value;

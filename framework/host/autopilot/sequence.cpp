@@ -52,8 +52,14 @@ std::optional<std::size_t> Sequence::after_jump(std::size_t n) {
   if (left < 0 && *target > n) {
     return *target;  // ahead, as often as it is reached
   }
-  if (left < 0 && jumped_[n] >= 2) {
-    return std::nullopt;
+  if (left < 0) {
+    // Jumps within the loop that are counted still make each round another one.
+    std::map<std::size_t, int> counted = jumped_;
+    std::erase_if(counted, [&](const auto& jump) { return jumps_left(jump.first) < 0; });
+    if (jumped_[n] >= 2 && counted == counted_[n]) {
+      return std::nullopt;
+    }
+    counted_[n] = std::move(counted);
   }
   ++jumped_[n];
   return *target;

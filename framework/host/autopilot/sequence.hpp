@@ -51,5 +51,7 @@ class Sequence {
   std::vector<formats::MissionCommand> commands_;
   formats::Autopilot autopilot_;
   std::map<std::size_t, int> jumped_;
+  /// Those that are counted, when a jump without end was made last.
+  std::map<std::size_t, std::map<std::size_t, int>> counted_;
 };
 }  // namespace altiplan::host

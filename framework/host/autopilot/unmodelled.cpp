@@ -44,6 +44,7 @@ constexpr Unmodelled kUnmodelled[] = {
     {"GLIDE_SLOPE_THR", 5, 0, is_ardupilots_wing, "climbs begin anew at another height"},
     {"MIN_GROUNDSPEED", 0, 0, is_ardupilots_wing, "it flies as fast as it takes over the ground"},
     {"MIN_GNDSPD_CM", 0, 0, is_ardupilots_wing, "it flies as fast as it takes over the ground"},
+    {"TECS_APPR_SMAX", 0, 0, is_ardupilots_wing, "it sinks at another rate before it lands"},
     {"Q_ENABLE", 0, 0, is_ardupilots_plane, "it is a QuadPlane (--vehicle vtol)"},
     {"WP_ACC", 2.5, 0, is_ardupilots_copter, "it takes other times to speed up"},
     {"WPNAV_ACCEL", 250, 0, is_ardupilots_copter, "it takes other times to speed up"},

@@ -54,6 +54,17 @@ MissionCommand stored_one(MissionCommand command, Autopilot autopilot) {
     case Task::arc:
       whole(p[0], 32767);
       break;
+    case Task::loiter_to_altitude:
+      whole(p[1], 65535);
+      break;
+    case Task::speed:  // a byte, which begins anew after 255
+      p[0] = std::abs(p[0]) < 1e9 ? double(std::uint8_t(std::int64_t(p[0]))) : p[0];
+      break;
+    case Task::set_home:
+    case Task::parachute:
+    case Task::fence:
+      whole(p[0], 65535);
+      break;
     default:
       break;
   }
@@ -262,7 +273,7 @@ class UploadCheck {
       return refuse("refused", "finds several items of that number to jump to");
     }
     if ((task == Task::arm && command.params[0] == 0) ||
-        (task == Task::engine && command.params[0] == 0 && !autopilot_.is_copter())) {
+        (task == Task::engine && !(command.params[0] > 0) && !autopilot_.is_copter())) {
       return refuse("unforeseeable", "stops the motor here");
     }
     return true;

@@ -72,6 +72,9 @@ class Walker {
   std::vector<std::size_t> positions_after(std::size_t n) const;
   /// Says what after that command is not flown.
   void note_unflown(std::size_t n);
+  /// ArduPilot starts one order between two items at once. The others run while it flies to the
+  /// next item, and are lost where it is there already.
+  void note_lost_orders(std::size_t n);
   /// What lasts for ever ends when the pilot or the ground station says so, and a failsafe may lead
   /// to a landing behind it: true if anything follows.
   bool goes_on_when_told(std::size_t n, const std::string& what);
@@ -212,6 +215,7 @@ class Walker {
   /// Flies the rounds of a jump that are left at once, where they are as those before.
   void fly_rounds(std::size_t n);
   std::map<std::size_t, Round> rounds_;
+  std::vector<std::size_t> orders_;  ///< since the last item that is flown
   int homes_set_ = 0;
   std::optional<Whereabouts> failsafe_;  ///< where it returns from, in place of the mission
 };
