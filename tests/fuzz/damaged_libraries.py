@@ -55,6 +55,7 @@ PARAMETERS = {
     "leg_length": "{min_m: 0.1}",
     "line_distance": "{line_m: [[0, 0], [1, 0]], within_m: 100000}",
     "photos": "{sensor_mm: [24, 16], image_px: [6000, 4000], focal_mm: 16, max_gsd_cm: 10000}",
+    "returnable": "{power_w: 1, maximum_wh: 100, cell_m: [10, 10, 10]}",
     "route_length": "{max_ratio: 5}",
     "turn_angle": "{max_deg: 170}",
     "turn_radius": "{min_m: 0.1}",

@@ -10,19 +10,24 @@ namespace altiplan {
 
 class Objective;
 
-/// A limit on what adds up along a route: the cost by an objective of all its legs. Searches that
-/// keep it prune by the objective's bound (astar); the judge adds up every route and track itself.
+/// A limit on what adds up along a route: the cost by an objective of all its legs, and perhaps on
+/// what must be left of it wherever the route is. Searches that keep it prune by the objective's
+/// bound and by what must be left; the judge adds up every route and track itself.
 class ALTIPLAN_API TotalLimit : public Constraint {
  public:
   /// `maximum` in the objective's unit.
   TotalLimit(std::shared_ptr<const Objective> of, double maximum);
   const Objective& of() const { return *of_; }
   double maximum() const { return maximum_; }
-  /// Of a route of legs of any kind; empty if it keeps the limit.
+  /// What a route that has come to p must not have taken yet: what the way home takes from there.
+  /// Default: 0. Infinite: no route may come there.
+  double left_at(const Vec3& p, const Request& request) const { return do_left_at(p, request); }
+  /// Of a route of legs of any kind; empty if it keeps the limit, at each waypoint with what must
+  /// be left there.
   std::vector<Violation> violations_of(const Route& route, const Request& request) const;
 
  private:
-  std::vector<Violation> violations_of(double total) const;
+  virtual double do_left_at(const Vec3& p, const Request& request) const;
   bool do_admits_all() const override { return true; }
   /// Of a track, at whose points nothing stops: the legs alone.
   std::vector<Violation> do_violations(const Polyline& route,

@@ -22,6 +22,7 @@
 #include "altiplan/kit/lattice/cell_search.hpp"
 #include "altiplan/kit/lattice/heading_search.hpp"
 #include "altiplan/kit/lattice/search_params.hpp"
+#include "altiplan/kit/totals.hpp"
 #include "altiplan/planner.hpp"
 #include "altiplan/plugin.hpp"
 #include "astar_search.hpp"
@@ -76,7 +77,7 @@ class AStar final : public Planner {
 
   /// The fastest search that the problem allows.
   static By quickest(const SearchSettings& settings, const Request& request) {
-    if (!astar::resources_of(request).empty()) {
+    if (!kit::resources_of(request).empty()) {
       return By::labels;
     }
     const bool is_length =

@@ -8,34 +8,9 @@
 #include <vector>
 
 #include "altiplan/kit/lattice/goal_search.hpp"
-#include "altiplan/objective.hpp"
-#include "altiplan/total_limit.hpp"
+#include "altiplan/kit/totals.hpp"
 
 namespace altiplan::astar {
-
-/// What adds up along a path and has a limit: a cost by an objective, or the length (null).
-struct Resource {
-  const Objective* of = nullptr;
-  double maximum = kInfinity;
-};
-
-/// Those of the request that a search can keep: limits on totals that do not depend on the
-/// time or on waypoints, and on the length of a route that is planned for another objective.
-inline std::vector<Resource> resources_of(const Request& request) {
-  std::vector<Resource> all;
-  for (const NamedConstraint& named : request.constraints) {
-    const auto* total = dynamic_cast<const TotalLimit*>(named.constraint.get());
-    const bool adds_up = total != nullptr && !total->of().traits().time &&
-                         !total->of().traits().waypoints;  // over legs
-    if (adds_up) {
-      all.push_back({&total->of(), total->maximum()});
-    }
-  }
-  if (request.limits.max_route_length < kInfinity && (request.objective || !all.empty())) {
-    all.push_back({nullptr, request.limits.max_route_length + kLengthTolerance});
-  }
-  return all;
-}
 
 /// A path to a cell.
 struct Label {
@@ -59,7 +34,7 @@ class LabelSearch : kit::GoalSearch {
   LabelSearch(const Request& request, const kit::SearchSettings& settings,
               const kit::Lattice& lattice, double best_cost, kit::OpenList& open)
       : GoalSearch(request, settings, lattice, best_cost, open),
-        resources_(resources_of(request)),
+        resources_(kit::resources_of(request)),
         by_step_(request.limits.turns() || request.judges_pairs()),
         first_of_(lattice.size(), kNone) {}
 
@@ -93,6 +68,10 @@ class LabelSearch : kit::GoalSearch {
  private:
   void begin() {
     open_.clear(quantum());
+    const std::vector<double> none(resources_.size(), 0);
+    if (!add_up(none.data(), start_, start_)) {
+      return;
+    }
     for (const kit::Lattice::Link& link : lattice_.links(start_)) {
       const Vec3 there = lattice_.position(link.cell);
       if (rules_.cell_blocked(link.cell) ||
@@ -100,8 +79,7 @@ class LabelSearch : kit::GoalSearch {
         continue;
       }
       const double g = link_cost(start_, there, link.length);
-      const std::vector<double> none(resources_.size(), 0);
-      if (g == kInfinity || !add_up(none.data(), start_, there, link.length)) {
+      if (g == kInfinity || !add_up(none.data(), start_, there)) {
         continue;
       }
       at_start_ = link.length == 0;
@@ -111,19 +89,11 @@ class LabelSearch : kit::GoalSearch {
 
   /// Sets `totals_` to those of a path with a further leg; false if no route over its end keeps all
   /// limits.
-  bool add_up(const double* before, const Vec3& a, const Vec3& b, double length) {
+  bool add_up(const double* before, const Vec3& a, const Vec3& b) {
     totals_.resize(resources_.size());
     for (std::size_t k = 0; k < resources_.size(); ++k) {
-      const Objective* of = resources_[k].of;
-      const double leg = of == nullptr ? length
-                         : length == 0 ? 0
-                                       : of->cost(Leg::straight(a, b), 0, request_);
-      const double tolerance = request_.goal.tolerance_m;
-      const double rest = of == nullptr   ? std::max(0.0, (goal_ - b).norm() - tolerance)
-                          : tolerance > 0 ? 0
-                                          : of->bound(b, goal_, request_);
-      totals_[k] = before[k] + leg;
-      if (costs_more(totals_[k] + rest, resources_[k].maximum)) {
+      totals_[k] = before[k] + resources_[k].of(a, b, request_);
+      if (!resources_[k].allows(totals_[k], b, request_)) {
         ++pruned_;
         return false;
       }
@@ -191,7 +161,7 @@ class LabelSearch : kit::GoalSearch {
                            evaluation(label.g, c, here)});
     }
     const kit::Lattice::Link* link = to_goal_.link_of(c);
-    if (link == nullptr || add_up(spent.data(), here, goal_, link->length)) {
+    if (link == nullptr || add_up(spent.data(), here, goal_)) {
       try_goal(index, label.g, 0, c, here, from);
     }
     const bool judged_whole = rules_.is_first(label.in) && from;
@@ -211,7 +181,7 @@ class LabelSearch : kit::GoalSearch {
       const double g = g_to[std::size_t(d)];
       const auto next = std::uint32_t(label.cell + lattice_.stride(d));
       const auto in = std::uint8_t(rules_.step_after(label.in, d));
-      if (!add_up(spent.data(), here, there, lattice_.step_length(d)) || is_needless(next, in, g) ||
+      if (!add_up(spent.data(), here, there) || is_needless(next, in, g) ||
           (judged_whole && !rules_.any_leg_ok(from, here, there))) {
         continue;
       }
@@ -236,7 +206,7 @@ class LabelSearch : kit::GoalSearch {
                        [&](std::uint32_t cell) { return lattice_.cell(cell); });
   }
 
-  std::vector<Resource> resources_;
+  std::vector<kit::Resource> resources_;
   bool by_step_;                         ///< constraints depend on two legs
   std::vector<std::uint32_t> first_of_;  ///< label of each cell
   std::vector<Label> labels_;

@@ -5,6 +5,7 @@
 
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/kit/totals.hpp"
 #include "costed_theta.hpp"
 
 namespace altiplan::kit {
@@ -89,7 +90,8 @@ PlanResult AnyAnglePlanner::by_heading(const Request& request, const PlanResult&
 }
 
 PlanResult EveryCellPlanner::do_plan(const Request& request) const {
-  if (!request.objective) {
+  const bool adds_up = !resources_of(request).empty();
+  if (!request.objective && !adds_up) {
     return AnyAnglePlanner::do_plan(request);
   }
   SearchSettings settings;
@@ -102,7 +104,8 @@ PlanResult EveryCellPlanner::do_plan(const Request& request) const {
   }
   OpenList open;
   PlanResult result = CostedTheta(request, settings, lattice, sight_, open).run().result;
-  const bool again = result.status == PlanStatus::no_route &&
+  // The search by heading knows no limits on totals.
+  const bool again = result.status == PlanStatus::no_route && !adds_up &&
                      params().angle_rule == AnyAngleParams::Angles::complete;
   return again ? by_heading(request, result) : result;
 }

@@ -7,13 +7,15 @@
 
 #include "altiplan/kit/any_angle/any_angle.hpp"
 #include "altiplan/kit/lattice/goal_search.hpp"
+#include "altiplan/kit/totals.hpp"
 
 namespace altiplan::kit {
 
-/// Theta* and Lazy Theta* by an objective (the planners theta_star and lazy_theta_star say of
-/// whom). Where costs differ from place to place a straight leg from the parent may cost more than
-/// the step: a cell takes the cheaper of the two that is valid. Costs are real numbers; closed
-/// cells are never reopened.
+/// Theta* and Lazy Theta* by an objective, or with limits on totals (the planners theta_star and
+/// lazy_theta_star say of whom): a cell keeps the path that costs least of those that keep the
+/// limits, so that it may miss one that goes on within them. Where costs differ from place to place
+/// a straight leg from the parent may cost more than the step: a cell takes the cheaper of the two
+/// that is valid. Costs are real numbers; closed cells are never reopened.
 class CostedTheta : GoalSearch {
  public:
   /// Memory of a search, by cell.
@@ -29,6 +31,7 @@ class CostedTheta : GoalSearch {
       : GoalSearch(request, settings, lattice, kInfinity, open),
         lazy_(sight == Sight::lazy),
         looks_back_(request.limits.turns() || request.judges_pairs()),
+        resources_(resources_of(request)),
         nodes_(lattice.size()) {}
 
   SearchResult run() {
@@ -67,6 +70,11 @@ class CostedTheta : GoalSearch {
     return costs_.leg(from, b, (b - from).norm());
   }
 
+  double min_cost(const Vec3& a, const Vec3& b) const {
+    return request_.objective ? request_.objective->bound(a, b, request_)
+                              : costs_.min_per_metre() * (b - a).norm();
+  }
+
   /// The approach to a node by the legs that lead there.
   std::optional<Approach> before_node(std::uint32_t n) const {
     Polyline points{position(n)};
@@ -77,8 +85,19 @@ class CostedTheta : GoalSearch {
     std::reverse(points.begin(), points.end());
     return altiplan::approach(points, points.size() - 1, request_.before_start());
   }
+  /// True as well if limits on totals may be kept by the path over a.
   bool sees(std::uint32_t a, const Vec3& b) {
-    return rules_.any_leg_ok(looks_back_ ? before_node(a) : std::nullopt, position(a), b);
+    return may_keep_totals(a, b) &&
+           rules_.any_leg_ok(looks_back_ ? before_node(a) : std::nullopt, position(a), b);
+  }
+
+  bool may_keep_totals(std::uint32_t n, const Vec3& to) const {
+    if (resources_.empty()) {
+      return true;
+    }
+    Polyline path = route_to(n, false);
+    path.push_back(to);
+    return may_keep(resources_, path, request_);
   }
 
   void begin() {
@@ -136,7 +155,7 @@ class CostedTheta : GoalSearch {
     const std::uint32_t p = nodes_[s].parent;
     const double known = nodes_[v].g;
     const double by_step = g(s) + cost(s, there);
-    const double at_least = g(p) + request_.objective->bound(position(p), there, request_);
+    const double at_least = g(p) + min_cost(position(p), there);
     double by_parent = kInfinity;
     if (at_least < known && at_least <= by_step) {
       by_parent = g(p) + cost(p, there);
@@ -191,7 +210,8 @@ class CostedTheta : GoalSearch {
   void offer_goal(std::uint32_t from, std::uint32_t parent, double at_goal) {
     const bool is_there = from != kNone && to_goal_.link_of(lattice_.cell(from)) != nullptr &&
                           to_goal_.link_of(lattice_.cell(from))->length == 0;
-    if (at_goal < goal_g_ && is_short_enough(parent, goal_) && (is_there || sees(from, goal_))) {
+    if (at_goal < goal_g_ && is_short_enough(parent, goal_) &&
+        (is_there ? may_keep_totals(parent, goal_) : sees(from, goal_))) {
       goal_g_ = at_goal;
       goal_parent_ = parent;
       request_.budget.show_best(at_goal);
@@ -233,6 +253,7 @@ class CostedTheta : GoalSearch {
 
   bool lazy_;
   bool looks_back_;  ///< a constraint may depend on the leg before
+  std::vector<Resource> resources_;
   std::vector<Node> nodes_;
 };
 }  // namespace altiplan::kit

@@ -11,6 +11,7 @@
 #include "altiplan/kit/sampling/sampling.hpp"
 #include "altiplan/kit/sampling/star_search.hpp"
 #include "altiplan/kit/sampling/tree_time.hpp"
+#include "altiplan/kit/totals.hpp"
 
 namespace altiplan::kit {
 
@@ -31,6 +32,7 @@ class StraightMotion {
         settings_(settings),
         memory_(memory),
         rules_(request),
+        resources_(resources_of(request)),
         before_start_(request.before_start()),
         objective_(request.objective.get()),
         is_point_(request.goal.tolerance_m == 0),
@@ -80,9 +82,10 @@ class StraightMotion {
   /// Length of an edge of at most that cost.
   double max_metres(double cost) const { return objective_ == nullptr ? cost : kInfinity; }
   bool is_short_enough(Node node, double cost) const {
-    const double maximum = request_.limits.max_route_length;
-    return maximum == kInfinity ||
-           (objective_ == nullptr ? cost : length(memory_.legs.way_to(node))) <= maximum;
+    if (!resources_.empty()) {
+      return keeps(resources_, Route(memory_.legs.way_to(node)), request_);
+    }
+    return objective_ != nullptr || cost <= request_.limits.max_route_length;
   }
   /// Distance over the ground from the foci of the informed set; under an objective the set is all
   /// of space, and bounds tell what may improve.
@@ -114,7 +117,8 @@ class StraightMotion {
 
   bool joins(Node from, const State& to) {
     return rules_.ok(behind(from), state(from), to) &&
-           (!in_time_ || leg_in_time(memory_.legs, from, to, request_));
+           (!in_time_ || leg_in_time(memory_.legs, from, to, request_)) &&
+           may_keep_totals(from, to);
   }
   void added(Node) {}
 
@@ -123,7 +127,7 @@ class StraightMotion {
   bool may_move(Node node, Node parent) {
     const auto before = behind(parent);
     return rules_.ok(before, state(parent), state(node)) &&
-           turns_follow(onward(before, state(parent)), node) &&
+           turns_follow(onward(before, state(parent)), node) && takes_no_more(node, parent) &&
            (!in_time_ || branch_in_time(memory_.legs, node, parent, request_));
   }
   void moved(Node) {}
@@ -132,6 +136,30 @@ class StraightMotion {
   Route route_to(Node node) const { return memory_.legs.way_to(node); }
 
  private:
+  bool may_keep_totals(Node from, const State& to) const {
+    if (resources_.empty()) {
+      return true;
+    }
+    Polyline path = memory_.legs.way_to(from);
+    path.push_back(to);
+    return may_keep(resources_, path, request_);
+  }
+  /// True if below another parent nothing that is limited is more than it was, here and so in all
+  /// of the branch.
+  bool takes_no_more(Node node, Node parent) const {
+    const auto taken = [&](const Resource& resource, Node from) {
+      const Polyline way = memory_.legs.way_to(from);
+      double sum = resource.of(way.back(), state(node), request_);
+      for (std::size_t i = 1; i < way.size(); ++i) {
+        sum += resource.of(way[i - 1], way[i], request_);
+      }
+      return sum;
+    };
+    return std::all_of(resources_.begin(), resources_.end(), [&](const Resource& resource) {
+      return taken(resource, parent) <= taken(resource, memory_.legs.parent(node));
+    });
+  }
+
   /// The approach to the node, if a constraint depends on it.
   std::optional<Approach> behind(Node node) const {
     return rules_.looks_back() ? memory_.legs.approach(node, 0, before_start_) : std::nullopt;
@@ -156,6 +184,7 @@ class StraightMotion {
   const StarSettings& settings_;
   StarMemory& memory_;
   LegRules rules_;
+  std::vector<Resource> resources_;
   std::optional<Approach> before_start_;
   const Objective* objective_;  ///< null: length
   bool is_point_;               ///< the goal has no tolerance

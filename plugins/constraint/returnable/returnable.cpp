@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// From every second of a route there is a way home: on along the route to its next waypoint, and
+// from there straight, or over the lattice of kit::HomeField, whose legs keep the request's limits.
+// On the first part nothing more is used than the route itself uses until that waypoint. So what is
+// used until a waypoint, and the way home from there, decide for all seconds before it.
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "altiplan/energy.hpp"
+#include "altiplan/environment.hpp"
+#include "altiplan/error.hpp"
+#include "altiplan/flown_route.hpp"
+#include "altiplan/kit/lattice/home_field.hpp"
+#include "altiplan/kit/lattice/lattice_params.hpp"
+#include "altiplan/plugin.hpp"
+#include "altiplan/total_limit.hpp"
+
+namespace altiplan::returnable {
+namespace {
+
+struct Home {
+  Point at;
+  void describe(Fields& f) { f.point(at).required().doc("where a way home may end"); }
+};
+
+struct Params {
+  std::vector<Home> homes;
+  Vec3 cell_m{50, 50, 10};
+  std::optional<double> maximum_wh;
+  std::optional<double> power_w;
+
+  void describe(Fields& f) {
+    f("homes", homes).doc("places to come home to; default: the start");
+    kit::describe_cell(f, cell_m);
+    f("maximum_wh", maximum_wh)
+        .unit("Wh")
+        .greater_than(0)
+        .doc("what may be used until home; default: what the vehicle's battery may give");
+    f("power_w", power_w)
+        .unit("W")
+        .greater_than(0)
+        .doc("power in all flight; default: by the vehicle's energy");
+  }
+};
+
+struct ConstantPower final : Power {
+  double power_w = 0;
+  double watts(const SteadyFlight&) const override { return power_w; }
+};
+
+std::shared_ptr<const Power> power_of(const Params& params, const Vehicle& vehicle) {
+  if (params.power_w) {
+    auto power = std::make_shared<ConstantPower>();
+    power->power_w = *params.power_w;
+    return power;
+  }
+  if (vehicle.energy == nullptr) {
+    throw Error("the power is not known: expected vehicle.energy in the scenario, or power_w");
+  }
+  return vehicle.energy->power;
+}
+
+double available_wh(const Params& params, const Vehicle& vehicle) {
+  const double wh = params.maximum_wh           ? *params.maximum_wh
+                    : vehicle.energy == nullptr ? kInfinity
+                                                : vehicle.energy->available_wh();
+  if (wh == kInfinity) {
+    throw Error(
+        "the battery is not known: expected vehicle.energy.capacity_wh in the scenario, "
+        "or maximum_wh");
+  }
+  return wh;
+}
+
+class FlightEnergy final : public Objective {
+ public:
+  explicit FlightEnergy(std::shared_ptr<const Power> power) : power_(std::move(power)) {}
+
+ private:
+  double do_cost(const Leg& leg, double, const Request& request) const override {
+    return leg_energy(leg, request, *power_);
+  }
+  std::vector<double> do_costs(const Route& route, const Request& request) const override {
+    return {std::max(legs_cost(route, request), flown_energy(route, request, *power_))};
+  }
+  /// The way home bounds what a search may use, better than a way to the goal.
+  double do_bound(const Vec3&, const Vec3&, const Request&) const override { return 0; }
+  std::string do_unit() const override { return "Wh"; }
+  Traits do_traits() const override { return {.place = true, .heading = true}; }
+
+  std::shared_ptr<const Power> power_;
+};
+
+/// What a field of ways home depends on, of requests of one scenario.
+struct Problem {
+  explicit Problem(const Request& request)
+      : world(request.world), volume(request.volume), limits(request.limits) {
+    for (const NamedConstraint& named : request.constraints) {
+      constraints.push_back(named.constraint.get());
+    }
+  }
+
+  bool operator==(const Problem& other) const {
+    const Limits& a = limits;
+    const Limits& b = other.limits;
+    return world == other.world && volume.min == other.volume.min &&
+           volume.max == other.volume.max && constraints == other.constraints &&
+           a.min_clearance == b.min_clearance && a.min_ground_clearance == b.min_ground_clearance &&
+           a.max_climb == b.max_climb && a.max_sink == b.max_sink &&
+           std::equal(a.altitude.begin(), a.altitude.end(), b.altitude.begin(), b.altitude.end(),
+                      [](const AltitudeBand& one, const AltitudeBand& two) {
+                        return one.datum == two.datum && one.min == two.min && one.max == two.max;
+                      });
+  }
+
+  std::shared_ptr<const World> world;
+  Box volume;
+  Limits limits;
+  std::vector<const Constraint*> constraints;
+};
+
+class Returnable final : public TotalLimit {
+ public:
+  Returnable(const Params& params, const Site& site)
+      : Returnable(params, site, power_of(params, site.vehicle)) {}
+
+ private:
+  Returnable(const Params& params, const Site& site, std::shared_ptr<const Power> power)
+      : TotalLimit(std::make_shared<FlightEnergy>(power), available_wh(params, site.vehicle)),
+        power_(std::move(power)),
+        cell_m_(params.cell_m) {
+    if (!site.vehicle.speed_near.empty()) {
+      throw Error("ways home are not known of a vehicle with speed_near");
+    }
+    for (const Home& home : params.homes) {
+      homes_.push_back(site.resolve(home.at));
+    }
+    if (homes_.empty() && site.start) {
+      homes_.push_back(*site.start);
+    }
+  }
+
+  double do_left_at(const Vec3& p, const Request& request) const override {
+    return field(request)->from(p);
+  }
+
+  /// Searched once for each problem: of routes, of tracks, and of a world that has changed.
+  std::shared_ptr<const kit::HomeField> field(const Request& request) const {
+    constexpr std::size_t kKept = 4;
+    const Problem problem(request);
+    const std::lock_guard lock(mutex_);
+    for (const auto& [of, field] : known_) {
+      if (of == problem) {
+        return field;
+      }
+    }
+    auto made = std::make_shared<const kit::HomeField>(
+        request, homes_.empty() ? std::vector{request.start.position} : homes_, cell_m_,
+        kit::HomeField::energy(request, power_));
+    if (known_.size() == kKept) {
+      known_.erase(known_.begin());
+    }
+    known_.emplace_back(problem, made);
+    return made;
+  }
+
+  std::shared_ptr<const Power> power_;
+  std::vector<Vec3> homes_;
+  Vec3 cell_m_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::pair<Problem, std::shared_ptr<const kit::HomeField>>> known_;
+};
+}  // namespace
+}  // namespace altiplan::returnable
+
+using altiplan::returnable::Params;
+using altiplan::returnable::Returnable;
+ALTIPLAN_PLUGIN(Constraint, "returnable", Returnable, Params,
+                "Keeps a way home from every second within what the battery may give")
