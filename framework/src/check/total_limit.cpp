@@ -13,7 +13,7 @@ namespace altiplan {
 TotalLimit::TotalLimit(std::shared_ptr<const Objective> of, double maximum)
     : of_(std::move(of)), maximum_(maximum) {}
 
-double TotalLimit::do_left_at(const Vec3&, const Request&) const { return 0; }
+double TotalLimit::do_left_at(const Vec3&, const Request&, double) const { return 0; }
 
 std::vector<Violation> TotalLimit::violations_of(const Route& route, const Request& request) const {
   const std::string unit = of_->unit().empty() ? "" : " " + of_->unit();

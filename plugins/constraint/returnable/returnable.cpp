@@ -105,16 +105,21 @@ struct Problem {
     }
   }
 
-  bool operator==(const Problem& other) const {
+  bool is_of(const Request& request) const {
     const Limits& a = limits;
-    const Limits& b = other.limits;
-    return world == other.world && volume.min == other.volume.min &&
-           volume.max == other.volume.max && constraints == other.constraints &&
-           a.min_clearance == b.min_clearance && a.min_ground_clearance == b.min_ground_clearance &&
-           a.max_climb == b.max_climb && a.max_sink == b.max_sink &&
+    const Limits& b = request.limits;
+    return world == request.world && volume.min == request.volume.min &&
+           volume.max == request.volume.max && a.min_clearance == b.min_clearance &&
+           a.min_ground_clearance == b.min_ground_clearance && a.max_climb == b.max_climb &&
+           a.max_sink == b.max_sink &&
            std::equal(a.altitude.begin(), a.altitude.end(), b.altitude.begin(), b.altitude.end(),
                       [](const AltitudeBand& one, const AltitudeBand& two) {
                         return one.datum == two.datum && one.min == two.min && one.max == two.max;
+                      }) &&
+           std::equal(constraints.begin(), constraints.end(), request.constraints.begin(),
+                      request.constraints.end(),
+                      [](const Constraint* one, const NamedConstraint& two) {
+                        return one == two.constraint.get();
                       });
   }
 
@@ -145,17 +150,16 @@ class Returnable final : public TotalLimit {
     }
   }
 
-  double do_left_at(const Vec3& p, const Request& request) const override {
-    return field(request)->from(p);
+  double do_left_at(const Vec3& p, const Request& request, double enough) const override {
+    return field(request)->from(p, enough);
   }
 
   /// Searched once for each problem: of routes, of tracks, and of a world that has changed.
   std::shared_ptr<const kit::HomeField> field(const Request& request) const {
     constexpr std::size_t kKept = 4;
-    const Problem problem(request);
     const std::lock_guard lock(mutex_);
     for (const auto& [of, field] : known_) {
-      if (of == problem) {
+      if (of.is_of(request)) {
         return field;
       }
     }
@@ -165,7 +169,7 @@ class Returnable final : public TotalLimit {
     if (known_.size() == kKept) {
       known_.erase(known_.begin());
     }
-    known_.emplace_back(problem, made);
+    known_.emplace_back(Problem(request), made);
     return made;
   }
 

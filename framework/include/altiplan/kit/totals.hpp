@@ -29,7 +29,8 @@ struct Resource {
         : goal.tolerance_m > 0 || goal.loiter ? 0
                                               : limit->of().bound(p, goal.position, request);
     return !costs_more(taken + to_goal, maximum) &&
-           (limit == nullptr || !costs_more(taken + limit->left_at(p, request), maximum));
+           (limit == nullptr ||
+            !costs_more(taken + limit->left_at(p, request, maximum - taken), maximum));
   }
 };
 

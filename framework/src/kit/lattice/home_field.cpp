@@ -243,16 +243,8 @@ void HomeField::search() {
   }
 }
 
-double HomeField::from(const Vec3& p) const {
-  std::vector<std::pair<double, Vec3>> ways;  // and where they leave p for
-  for (const Vec3& home : homes_) {
-    ways.emplace_back(p == home ? 0 : cost_(p, home), home);
-  }
-  for (const Lattice::Link& link : lattice_.links(p)) {
-    const Vec3 there = lattice_.position(link.cell);
-    const double rest = at(link.cell);
-    ways.emplace_back(rest + (rest < kInfinity && link.length > 0 ? cost_(p, there) : 0), there);
-  }
+/// The cheapest of the ways from p that begin with a leg that may be flown.
+double HomeField::best_of(const Vec3& p, std::vector<Way> ways) const {
   std::sort(ways.begin(), ways.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [cost, to] : ways) {
@@ -261,5 +253,23 @@ double HomeField::from(const Vec3& p) const {
     }
   }
   return kInfinity;
+}
+
+double HomeField::from(const Vec3& p, double enough) const {
+  std::vector<Way> ways;
+  for (const Lattice::Link& link : lattice_.links(p)) {
+    const Vec3 there = lattice_.position(link.cell);
+    const double rest = at(link.cell);
+    ways.emplace_back(rest + (rest < kInfinity && link.length > 0 ? cost_(p, there) : 0), there);
+  }
+  const double over_lattice = best_of(p, ways);
+  if (over_lattice <= enough) {
+    return over_lattice;
+  }
+  ways.clear();
+  for (const Vec3& home : homes_) {
+    ways.emplace_back(p == home ? 0 : cost_(p, home), home);
+  }
+  return std::min(over_lattice, best_of(p, ways));
 }
 }  // namespace altiplan::kit

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "altiplan/kit/lattice/lattice.hpp"
@@ -43,12 +44,15 @@ class ALTIPLAN_API HomeField {
     const std::int32_t left = lefts()[index(c)];
     return left == 0 ? kInfinity : (kLongest - left) * quantum_;
   }
-  /// From anywhere: straight home, or by a link to the lattice.
-  double from(const Vec3& p) const;
+  /// From anywhere: straight home, or by a link to the lattice, which alone is asked where it takes
+  /// no more than `enough`.
+  double from(const Vec3& p, double enough = 0) const;
 
  private:
   static constexpr std::int32_t kLongest = 1 << 30;  ///< of all ways, in quanta
   struct Moves;
+  using Way = std::pair<double, Vec3>;  ///< what it takes, and where its first leg leads
+  double best_of(const Vec3& p, std::vector<Way> ways) const;
   /// Columns of cells lie together, within a border: what is one step from a cell is near it in
   /// memory.
   std::uint32_t index(const Cell& c) const {
