@@ -239,9 +239,11 @@ void makes(const PluginEntry& entry, Report& report) {
                     [] { return "nothing is created from the default parameters"; });
     }
   } catch (const Error& error) {
-    // A layer may need another before it, an objective what the scenario tells of the vehicle; one
-    // that needs none is made from the parameters that describe accepts.
-    report.expect(entry.environment != nullptr || entry.objective != nullptr, kMakes, [&] {
+    // A layer may need another before it, an objective or a constraint what the scenario tells of
+    // the vehicle; one that needs none is made from the parameters that describe accepts.
+    const bool may_need =
+        entry.environment != nullptr || entry.objective != nullptr || entry.constraint != nullptr;
+    report.expect(may_need, kMakes, [&] {
       return std::string("describe accepts the default parameters, the factory does not: ") +
              error.what();
     });

@@ -2,7 +2,11 @@
 """energy_test.py PROGRAM BROKEN: time and energy of routes as they are flown, against formulas written here.
 
 `python3 energy_test.py PROGRAM BROKEN Energy.test_stops` runs one case."""
+import base64
+import json
 import math
+import struct
+import zlib
 
 import case
 
@@ -120,6 +124,42 @@ class Energy(case.CliCase):
         refused = self.ran(unknown, code=1)
         self.assertIsNone(refused["steps"][0]["metrics"]["energy_wh"])
         self.assertIn("the power of part of the flight is not known", refused["message"])
+
+    def test_reach(self):
+        """In an empty world without wind a disc: its radius is what the battery gives over what a metre takes."""
+        self.write("scenario.yaml", """altiplan: 1
+volume: {min_m: [0, 0, 0], max_m: [4000, 4000, 100]}
+vehicle: {speed_mps: 10, energy: {capacity_wh: 12, reserve: 0, power_w: 360}}
+start: {at_m: [2000, 2000, 50]}
+goal: {at_m: [2700, 2000, 50]}
+""")
+        self.write("pipeline.yaml", "altiplan: 1\nscenario: scenario.yaml\nsteps:\n  - plan: astar\n")
+        self.call("run", "pipeline.yaml", "-o", "result.json")
+        self.call("view", "result.json", "--reach", "-o", "page.html")
+        page = self.read("page.html")
+        scene = json.loads(page[page.index('{"altiplan_scene"'):].split("</script>")[0])
+        shown = scene["basemap"]
+        self.assertIn("a line every 2 Wh, to 12 Wh", shown["name"])
+        last, = scene["numbered"]
+        self.assertEqual(last["number"], "point of no return")
+        self.assertTrue(2585 < last["at"][0] <= 2600, "6 Wh there, 6 Wh back")
+        image = base64.b64decode(shown["image"].split(",")[1])
+        width, height = struct.unpack(">II", image[16:24])
+        (west, south), (east, north) = shown["box"]
+        rows = zlib.decompress(image[image.index(b"IDAT") + 4:])
+
+        def opacity(metres, degrees):
+            x = 2000 + metres * math.cos(math.radians(degrees))
+            y = 2000 + metres * math.sin(math.radians(degrees))
+            row = int((north - y) / (north - south) * height) * (4 * width + 1) + 1
+            column = int((x - west) / (east - west) * width)
+            return sum(rows[row + 4 * k + 3] for k in range(column + 1)) % 256
+
+        for degrees in range(0, 360, 15):
+            self.assertIn(opacity(1090, degrees), (0, 255), degrees)  # up to 8 % longer by steps
+            self.assertEqual(opacity(1230, degrees), 130, degrees)
+        lines = [metres for metres in range(150, 1250) if opacity(metres, 90) == 255]
+        self.assertEqual(sorted({round(metres, -2) for metres in lines}), [200, 400, 600, 800, 1000, 1200])
 
     def test_limits_count_stops(self):
         """As the objectives time and energy, which searches know by their legs alone."""

@@ -26,6 +26,7 @@ struct ViewArguments {
   std::optional<double> mp4_seconds;
   std::optional<double> cut_m;
   std::optional<std::string> basemap;
+  bool reach = false;
   MissionOptions mission;
   host::Overrides overrides;
 
@@ -133,9 +134,11 @@ std::vector<host::StoredResult> read_results(const ViewArguments& arguments) {
   return results;
 }
 
-host::Scene scene_of(const std::vector<host::StoredResult>& results) {
+host::Scene scene_of(const ViewArguments& arguments) {
+  const std::vector<host::StoredResult> results = read_results(arguments);
   Activity activity;
-  return host::build_scene(results, [&](const std::string& what) { activity.begin(what); });
+  return host::build_scene(
+      results, [&](const std::string& what) { activity.begin(what); }, arguments.reach);
 }
 
 /// The places of a mission's items, with the numbers that ground stations show.
@@ -174,8 +177,8 @@ int view(const ViewArguments& arguments) {
   }
   const std::optional<host::FilmMakers> makers =
       arguments.mp4 ? std::optional<host::FilmMakers>(std::in_place) : std::nullopt;
-  host::Scene scene = arguments.mission.plan.plan.empty() ? scene_of(read_results(arguments))
-                                                          : scene_of_mission(arguments);
+  host::Scene scene =
+      arguments.mission.plan.plan.empty() ? scene_of(arguments) : scene_of_mission(arguments);
   for (const std::string& warning : scene.warnings) {
     warn(warning);
   }
@@ -212,13 +215,18 @@ void add_view(App& app, Action& action) {
     if (!arguments.page && !arguments.png && !arguments.svg && !arguments.mp4) {
       throw UsageError{"-o, --png, --svg or --mp4 is required"};
     }
-    if (arguments.basemap && !arguments.page && !arguments.png && !arguments.mp4) {
-      throw UsageError{"--basemap is shown by -o, --png and --mp4"};
+    const bool has_ground_image = arguments.basemap || arguments.reach;
+    if (has_ground_image && !arguments.page && !arguments.png && !arguments.mp4) {
+      throw UsageError{std::string(arguments.reach ? "--reach" : "--basemap") +
+                       " is shown by -o, --png and --mp4"};
     }
     const std::vector<std::string>& files = arguments.results;
     for (const std::string& file : files) {
       if (!is_mission(arguments.mission, file)) {
         continue;
+      }
+      if (arguments.reach) {
+        throw UsageError{"--reach is shown of results: a mission's battery is not known"};
       }
       if (files.size() > 1 || arguments.mp4) {
         throw UsageError{"a mission is shown alone, and not as a film"};
@@ -253,7 +261,13 @@ void add_view(App& app, Action& action) {
                   "length of the film (s); default: a thirtieth of the flight, but 20 to 120 s")
       ->check(number_from(1, 600))
       ->needs(mp4);
-  add_basemap(command, arguments.basemap);
+  auto* basemap = add_basemap(command, arguments.basemap);
+  command
+      .add_flag(
+          "--reach", arguments.reach,
+          "show from where home can be reached on the scenario's battery: lines of the energy "
+          "of the best way home, and the point of no return")
+      ->excludes(basemap);
   add_mission_options(command, arguments.mission);
   add_plugin_path(command, arguments.overrides);
   set_example(command, "altiplan view result.json -o page.html");

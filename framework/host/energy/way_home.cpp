@@ -65,7 +65,8 @@ std::vector<std::pair<double, Vec3>> by_the_second(const Route& route, const Req
 }
 }  // namespace
 
-std::optional<double> point_of_no_return(const Route& route, const Request& request) {
+std::optional<NoReturn> point_of_no_return(const Route& route, const Request& request,
+                                           const std::function<double(const Vec3&)>& home_wh) {
   const Energy* energy = request.vehicle.energy.get();
   if (energy == nullptr || !std::isfinite(energy->capacity_wh) || route.empty()) {
     return std::nullopt;
@@ -75,18 +76,23 @@ std::optional<double> point_of_no_return(const Route& route, const Request& requ
   const double whole = track_energy(places, request, *energy->power);
   const double scale =
       whole > 0 ? std::max(1.0, flown_energy(route, request, *energy->power) / whole) : 1;
-  std::optional<double> last_s;
+  std::optional<NoReturn> last;
   double taken_wh = 0;
   for (std::size_t n = 0; n < places.size(); ++n) {
     if (n > 0) {
       taken_wh += scale * track_energy({places[n - 1], places[n]}, request, *energy->power);
     }
-    const double home_wh = energy_home(places[n].second, route.front(), request);
-    if (!(taken_wh + home_wh <= energy->available_wh())) {
+    if (!(taken_wh + home_wh(places[n].second) <= energy->available_wh())) {
       break;
     }
-    last_s = places[n].first;
+    last = {places[n].first, places[n].second};
   }
-  return last_s;
+  return last;
+}
+
+std::optional<double> point_of_no_return(const Route& route, const Request& request) {
+  const auto last = point_of_no_return(
+      route, request, [&](const Vec3& p) { return energy_home(p, route.front(), request); });
+  return last ? std::optional(last->time_s) : std::nullopt;
 }
 }  // namespace altiplan::host

@@ -8,6 +8,7 @@
 
 #include "host/config/overrides.hpp"
 #include "host/flight/events.hpp"
+#include "host/view/reach.hpp"
 #include "host/view/scene_parts.hpp"
 
 namespace altiplan::host {
@@ -124,8 +125,8 @@ std::string mission_text(const StoredResult& stored) {
 
 class SceneBuilder {
  public:
-  SceneBuilder(const std::vector<StoredResult>& results, const SceneProgress& progress)
-      : results_(results), progress_(progress) {}
+  SceneBuilder(const std::vector<StoredResult>& results, const SceneProgress& progress, bool reach)
+      : results_(results), progress_(progress), reach_(reach) {}
 
   Scene operator()() {
     // Groups results by mission, so that each is built once.
@@ -147,6 +148,7 @@ class SceneBuilder {
     }
     Json all = std::move(results);
     name_apart(all);
+    scene_.update(reached_);
     scene_["notes"] = notes_.lines();
     scene_["results"] = std::move(all);
     return {std::move(scene_), notes_.warnings(), std::move(frame_)};
@@ -189,6 +191,10 @@ class SceneBuilder {
       seed_ = config.seed;
       frame_ = mission.truth.frame();
       scene_ = world_scene(title_of(config), mission, build_events(config, mission), box_, notes_);
+      if (reach_) {
+        say("searching ways home");
+        add_reach(reached_, mission, of.route.value_or(Route{}));
+      }
     } else if (config.seed != seed_) {
       // Only the built worlds show whether a layer depends on the run's seed.
       SceneNotes unused;
@@ -228,8 +234,10 @@ class SceneBuilder {
 
   const std::vector<StoredResult>& results_;
   const SceneProgress& progress_;
+  const bool reach_;
   std::shared_ptr<Registry> registry_;
   Json scene_;
+  Json reached_ = Json::object();
   Box box_;
   Frame frame_;
   std::int64_t seed_ = 0;
@@ -325,7 +333,8 @@ Box scene_box(const Mission& mission, const std::vector<StoredResult>& results) 
   return box;
 }
 
-Scene build_scene(const std::vector<StoredResult>& results, const SceneProgress& progress) {
-  return SceneBuilder(results, progress)();
+Scene build_scene(const std::vector<StoredResult>& results, const SceneProgress& progress,
+                  bool reach) {
+  return SceneBuilder(results, progress, reach)();
 }
 }  // namespace altiplan::host

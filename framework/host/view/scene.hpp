@@ -25,7 +25,9 @@ using SceneProgress = std::function<void(const std::string& what)>;
 
 /// The world of the results, rebuilt from their files, with their routes and flights. Throws Error
 /// if they are not of the same world, and as load_config and build_mission do.
-Scene build_scene(const std::vector<StoredResult>& results, const SceneProgress& progress = {});
+/// `reach`: also that of reach.hpp, of the first result.
+Scene build_scene(const std::vector<StoredResult>& results, const SceneProgress& progress = {},
+                  bool reach = false);
 
 /// A line with a verdict that is not the judge's of routes.
 struct JudgedLine {
