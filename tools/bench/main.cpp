@@ -14,11 +14,12 @@ int main(int argc, char** argv) {
       "altiplan-bench");
   app.set_version_flag("--version", ALTIPLAN_VERSION);
   bench::Subcommands all(app);
-  for (const auto add : {bench::add_grid, bench::add_any_angle, bench::add_search,
-                         bench::add_replan, bench::add_sampling, bench::add_ants, bench::add_pilot,
-                         bench::add_field, bench::add_queries, bench::add_dubins,
-                         bench::add_hybrid_astar, bench::add_airspace, bench::add_detours,
-                         bench::add_terrain, bench::add_legs, bench::add_plan, bench::add_watch}) {
+  for (const auto add :
+       {bench::add_grid, bench::add_any_angle, bench::add_search, bench::add_replan,
+        bench::add_sampling, bench::add_ants, bench::add_pilot, bench::add_field,
+        bench::add_queries, bench::add_dubins, bench::add_hybrid_astar, bench::add_airspace,
+        bench::add_detours, bench::add_terrain, bench::add_reach, bench::add_legs, bench::add_plan,
+        bench::add_watch}) {
     add(all);
   }
   try {

@@ -59,6 +59,7 @@ void add_legs(Subcommands& all);
 void add_pilot(Subcommands& all);
 void add_plan(Subcommands& all);
 void add_queries(Subcommands& all);
+void add_reach(Subcommands& all);
 void add_replan(Subcommands& all);
 void add_sampling(Subcommands& all);
 void add_search(Subcommands& all);
