@@ -61,6 +61,8 @@ MISSIONS = [
      (120, -60, 180, 60, 0, 2000), {}, "transition"),
     ("the same with PX4", PX4_VTOL, [to(84, 40, 0, 50), way(40, 600), way(0, 0), to(85, 0, 0, 0)],
      (150, -60, 230, 60, 0, 2000), {}, "transition"),
+    ("a VTOL that points away from its way", VTOL, [UP, way(900, 0), way(900, 900), HOME], None, {"HEADING": 180},
+     "where it points"),
     ("a VTOL that speeds up nobody knows where to", VTOL, [UP, HOME], None, {}, "where it points"),
     ("a corner before a landing, cut", PLANE, [way(-1200, 0, 100), way(0, 0, 100), to(21, 0, 1200, 0)],
      (-60, 20, -25, 55, 0, 2000), {}, "landing"),
@@ -186,6 +188,8 @@ class Dangerous(PlanCase):
         parameters = dict(parameters)
         if wind := parameters.pop("WIND", None):
             arguments += ["--wind", str(wind)]
+        if vehicle == VTOL:
+            arguments += ["--runway", str(parameters.pop("HEADING", 90))]
         if parameters:
             (self.folder / "p.param").write_text("".join(f"{k},{v}\n" for k, v in parameters.items()))
             arguments += ["--params", "p.param"]

@@ -134,6 +134,54 @@ TEST(FlownMission, AQuadplaneAddsTheNumberOfItsTakeOffToItsHeight) {
   EXPECT_TRUE(has_rule(flown, "take_off_frame"));
 }
 
+TEST(FlownMission, AQuadplaneSpeedsUpWhereItPoints) {
+  const std::vector<MissionCommand> commands{command(84, 0, 0, 60), command(16, 900, 0, 60),
+                                             command(16, 1800, 0, 60)};
+  const auto is_judged = [&](std::optional<double> heading, Autopilot autopilot) {
+    FlightOptions options;
+    options.runway_deg = heading;
+    return !has_rule(fly(commands, autopilot, options), "not_judged");
+  };
+  EXPECT_FALSE(is_judged(std::nullopt, kQuadplane));
+  EXPECT_TRUE(is_judged(80, kQuadplane));
+  EXPECT_FALSE(is_judged(70, kQuadplane));
+}
+
+TEST(FlownMission, AQuadplaneSwingsInWind) {
+  const auto reach = [](double wind_mps) {
+    FlightOptions options;
+    options.runway_deg = 90;
+    options.wind_mps = wind_mps;
+    const FlownMission flown =
+        fly({command(84, 0, 0, 60), command(16, 900, 0, 60), command(85, 1800, 0, 0)}, kQuadplane,
+            options);
+    return part(flown, "the landing").strips.front().reach_m;
+  };
+  EXPECT_NEAR(reach(0), 2, 0.01);
+  EXPECT_NEAR(reach(4), 10, 0.01);
+}
+
+TEST(FlownMission, ASpeedBeyondItsLimitsIsIgnored) {
+  const auto flown = [](double mps) {
+    return fly({command(16, 0, 0, 100), order(178, {0, mps, -1, 0}), command(16, 900, 0, 100)},
+               kPlane);
+  };
+  EXPECT_TRUE(has_rule(flown(25), "speed"));
+  EXPECT_FALSE(has_rule(flown(20), "speed"));
+}
+
+TEST(FlownMission, Px4TakesAPlanesMissionWithoutALandingIfItIsTold) {
+  const std::vector<MissionCommand> commands{command(16, 0, 0, 100), command(16, 900, 0, 100)};
+  constexpr Autopilot kPx4Plane{Firmware::px4, Airframe::plane};
+  FlightOptions options;
+  EXPECT_TRUE(has_rule(fly(commands, kPx4Plane, options), "refused"));
+  options.parameters["MIS_TKO_LAND_REQ"] = 0;
+  const FlownMission flown = fly(commands, kPx4Plane, options);
+  EXPECT_FALSE(has_rule(flown, "refused") || has_rule(flown, "MIS_TKO_LAND_REQ"));
+  options.parameters["MIS_TKO_LAND_REQ"] = 1;
+  EXPECT_TRUE(has_rule(fly(commands, kPx4Plane, options), "MIS_TKO_LAND_REQ"));
+}
+
 TEST(FlownMission, AReturnClimbsToTheAutopilotsHeight) {
   const std::vector<MissionCommand> commands{command(22, 0, 0, 10), command(16, 800, 0, 10),
                                              order(20, {0, 0, 0, 0})};
@@ -159,9 +207,9 @@ TEST(FlownMission, APlaneCutsACornerByItsDistanceOfGuidance) {
 }
 
 TEST(FlownMission, APlaneChangesItsHeightAtOnceBelow15Metres) {
-  const auto low_after = [](double drop) {
+  const auto low_after = [](double drop, double end = 100) {
     const FlownMission flown = fly(
-        {command(16, 0, 0, 100 + drop), command(16, 100, 0, 100 + drop), command(16, 2100, 0, 100)},
+        {command(16, 0, 0, end + drop), command(16, 100, 0, end + drop), command(16, 2100, 0, end)},
         kPlane);
     double low = kInfinity;  // 400 m along the last way
     for (const FlownPart& one : flown.parts) {
@@ -177,6 +225,7 @@ TEST(FlownMission, APlaneChangesItsHeightAtOnceBelow15Metres) {
   };
   EXPECT_NEAR(low_after(14), 100, 0.5);
   EXPECT_GT(low_after(20), 114);
+  EXPECT_GT(low_after(20, -200), -186);  // below its home only climbs are steep
 }
 
 TEST(FlownMission, ATooSteepLegOfAPlaneIsNoted) {

@@ -59,7 +59,8 @@ void add_autopilot_options(App& command, MissionOptions& mission) {
                      "the autopilot's parameters (.param, .params), in place of its defaults");
   command
       .add_option("--runway DEGREES", mission.plan.gate.flight.runway_deg,
-                  "heading of an aeroplane's take-off, clockwise from north")
+                  "heading of an aeroplane's take-off, and of ArduPilot's VTOL then, clockwise "
+                  "from north")
       ->check(number_from(0, 360));
   command
       .add_option("--wind M/S", mission.plan.gate.flight.wind_mps,

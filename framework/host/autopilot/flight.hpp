@@ -141,6 +141,7 @@ class Hover {
   double climb_acceleration() const;  ///< m/s², above the ground, of ArduPilot's
   /// Adds what lies within a distance of a leg, level with it.
   void add_beside(const Destination& to, double distance);
+  double column_reach() const;
   double reach() const { return reach(acceptance_m); }  ///< of the present place
   double reach(double acceptance) const;                ///< radius within which a place is reached
 
@@ -297,6 +298,7 @@ class Wing {
   Destination from_;  ///< the previous item, from which the track leads
   bool has_track_ = false;
   bool does_arrive_ = true;
+  bool sinks_ = false;                 ///< it was above the present item when it set out for it
   std::optional<Destination> before_;  ///< the item before that, if its track leads there
   double cut_m_ = 0;                   ///< how far before the previous item it may have turned
   double changing_mps_[2];             ///< the speeds, and those before them

@@ -54,6 +54,7 @@ void Walker::place_home() {
   }
   flight_.home = home_;
   flight_.home_ground = home_z_;
+  flight_.wind_mps = options_.wind_mps;
 }
 
 Eigen::Vector2d Walker::here() const {

@@ -76,8 +76,9 @@ struct FlownMission {
 /// What a flight depends on, besides the mission.
 struct FlightOptions {
   ParameterFile parameters;
-  std::optional<double> runway_deg;  ///< of an aeroplane's take-off, clockwise from north
-  double wind_mps = 0;               ///< the strongest, from anywhere
+  /// Of an aeroplane's take-off, and where ArduPilot's VTOL points then; clockwise from north.
+  std::optional<double> runway_deg;
+  double wind_mps = 0;  ///< the strongest, from anywhere
 };
 
 /// Flies the mission's commands as that autopilot does (facts: ArduPilot 4.7, PX4 1.16). Heights
@@ -90,6 +91,15 @@ FlownMission fly_mission(const formats::MissionFile& plan, formats::Autopilot au
 std::vector<formats::Autopilot> possible_autopilots(
     const formats::MissionFile& plan, const std::optional<formats::Firmware>& firmware,
     const std::optional<formats::Airframe>& airframe, const ParameterFile& parameters);
+
+/// What aeroplanes may be planned with so that they keep up: rates of climb and sink in m/s that
+/// they hold in turns and straight on, at that height, for the seconds that their airspeed makes of
+/// a way.
+struct HeldRates {
+  double climb_mps = 0;
+  double sink_mps = 0;
+};
+HeldRates held_rates(formats::Autopilot autopilot, const ParameterFile& parameters, double z);
 
 /// "item 3 (waypoint)" as ground stations number it, "line 5" where the file numbers nothing.
 std::string name_of_command(const formats::MissionCommand& command);

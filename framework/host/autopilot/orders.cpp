@@ -87,7 +87,6 @@ void Walker::set_hover_speed() {
 }
 
 void Walker::set_wing_speed() {
-  flight_.wind_mps = options_.wind_mps;
   if (options_.wind_mps > min_airspeed() / 2) {
     give_up(0, "flight in a wind of more than half its minimum airspeed, " +
                    with_digits(min_airspeed(), 3) +
@@ -165,6 +164,11 @@ void Walker::change_speed(std::size_t n) {
     }
     speeds[0] = speeds[1] = value == -2 ? cruise : value;
     take_speed(counts, speeds, airspeed_, cruise);
+    if (!counts && p[0] == 0 && value > 0) {
+      flight_.remark(Weight::note, "speed", n,
+                     "is ignored: the airspeed is from " + with_digits(min_airspeed(), 3) + " to " +
+                         with_digits(max_airspeed(), 3) + " m/s (AIRSPEED_MIN, AIRSPEED_MAX)");
+    }
   }
   speeds[1] = std::max(speeds[1], min_ground_mps_);
   take_speed(counts, speeds, wing_speed_, cruise);

@@ -87,6 +87,7 @@ const Row kRows[] = {
     {"Q_WP_SPD_UP", {kNone, 2.5, kNone, kNone}, "Q_WP_SPEED_UP", kCm},
     {"Q_WP_SPD_DN", {kNone, 1.5, kNone, kNone}, "Q_WP_SPEED_DN", kCm},
     {"Q_LAND_FINAL_SPD", {kNone, 0.5, kNone, kNone}},
+    {"MIS_TKO_LAND_REQ", {kNone, kNone, 0, 2}},
     {"NAV_ACC_RAD", {kNone, kNone, 10, 10}},
     {"NAV_LOITER_RAD", {kNone, kNone, kNone, 80}},
     {"MPC_XY_CRUISE", {kNone, kNone, 5, 5}},
@@ -122,7 +123,7 @@ constexpr std::string_view kMayBeZero[] = {
     "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
     "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
     "MIS_OPTIONS",     "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",
-    "LAND_SPD_HIGH_MS"};
+    "LAND_SPD_HIGH_MS", "MIS_TKO_LAND_REQ"};
 
 void expect_possible(const Row& row, const ParameterValue& given) {
   const double value = given.value;

@@ -158,13 +158,26 @@ bool Walker::take_off_along_runway(std::size_t n) {
 
 bool Walker::begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& toward) {
   constexpr double kLongest = 15;  // seconds: VT_TRANS_TIMEOUT
-  constexpr double kReach = 8;     // metres
+  constexpr double kBeside = 8;    // metres
+  // ArduPilot's is carried aside while it is slow.
+  const double reach = kBeside + (is_px4() ? 0 : 2 * flight_.wind_mps);
   if (!toward || (*toward - hover_->at).norm() < 1) {
     return !give_up(n,
                     "where it speeds up after its climb depends on where it points: a waypoint "
                     "must follow");
   }
   const Eigen::Vector2d begin = hover_->at;
+  if (!is_px4()) {  // which turns on the spot first; it speeds up where it points, and turns then
+    constexpr double kAlong = radians(15);
+    const Eigen::Vector2d way = *toward - begin;
+    const double heading = radians(90 - options_.runway_deg.value_or(0));
+    const double off = std::remainder(std::atan2(way.y(), way.x()) - heading, 2 * kPi);
+    if (!options_.runway_deg || std::abs(off) > kAlong) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "how it turns to its way after its climb depends on where it points: give its "
+                     "heading (--runway DEGREES), within 15 degrees of that way");
+    }
+  }
   forget_speeds();
   wing_.emplace(flight_);
   set_wing_speed();
@@ -173,7 +186,7 @@ bool Walker::begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& 
       begin + kLongest * wing_->speed_mps[1] * (*toward - begin).normalized();
   flight_.begin(n, "the transition to flight on wings");
   flight_.add_strip({begin.x(), begin.y(), hover_->low}, hover_->high,
-                    {end.x(), end.y(), hover_->low}, hover_->high, kReach);
+                    {end.x(), end.y(), hover_->low}, hover_->high, reach);
   flight_.take({0, kLongest});
   wing_->start_on(begin, end, hover_->low);
   return true;

@@ -54,7 +54,7 @@ constexpr Unmodelled kUnmodelled[] = {
     {"MPC_ACC_HOR", 3, 0, is_of_px4, "it takes other times to speed up"},
     {"MPC_JERK_AUTO", 4, 0, is_of_px4, "it takes other times to speed up"},
     {"MIS_TKO_LAND_REQ", 0, 0, is_px4s_copter, "it refuses other missions"},
-    {"MIS_TKO_LAND_REQ", 2, 0, is_px4s_wing, "it refuses other missions"},
+    {"MIS_TKO_LAND_REQ", 2, 1 | 4, is_px4s_wing, "it refuses other missions"},
     {"MIS_DIST_1WP", 900, 0, is_of_px4, "it refuses other missions"},
     {"FW_LND_ANG", 5, 0, is_px4s_wing, "it refuses other landings"},
     {"SOAR_ENABLE", 0, 0, is_ardupilots_wing, "it circles in thermals"},

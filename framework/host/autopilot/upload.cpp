@@ -361,7 +361,9 @@ bool UploadCheck::check_feasibility() {
     }
     before = formats::flies_to_position(task) ? std::optional(n) : before;
   }
-  if (before && !autopilot_.is_copter() && !lands) {
+  constexpr double kLanding = 2;  // and above: a landing, or both
+  const double required = autopilot_.is_copter() ? 0 : flight_.parameter("MIS_TKO_LAND_REQ");
+  if (before && required >= kLanding && !lands) {
     is_valid = refuse(*before, "refuses a mission without a landing (MIS_TKO_LAND_REQ)");
   }
   if (before && (starts > 1 || (starts > 0 && !lands))) {

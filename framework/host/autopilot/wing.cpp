@@ -49,6 +49,15 @@ constexpr double kWeakest = 0.72;  // the turn that is flown, of what the greate
 double bearing_of(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
 }  // namespace
 
+HeldRates held_rates(formats::Autopilot autopilot, const ParameterFile& parameters, double z) {
+  const Parameters value(autopilot, parameters);
+  if (autopilot.is_px4()) {
+    return {kSlow * value("FW_T_CLMB_R_SP"), kSlow * value("FW_T_SINK_R_SP")};
+  }
+  const double faster = air_ratio(z) * kWarmest;
+  return {kClimbInTurn * value("TECS_CLMB_MAX") / faster, kSlow * value("TECS_SINK_MAX") / faster};
+}
+
 Wing::Wing(Flight& flight) : flight_(flight) {
   const bool is_px4 = flight.autopilot().is_px4();
   climb_mps_ = flight.parameter(is_px4 ? "FW_T_CLMB_R_SP" : "TECS_CLMB_MAX");
@@ -189,7 +198,8 @@ std::array<double, 2> Wing::sought_heights(const Leg& leg, const Destination& fr
   // It may be above the ramp by now, or climb steeply up to CLIMB_SLOPE_HGT. A ramp from a height
   // above the ground is cut at the number of that height, as if it were one above the sea.
   constexpr double kSteepBelow = 25;
-  const bool may_be_steep = !has_track_ || from.low < flight_.home_ground + kSteepBelow;
+  const bool may_climb_steeply = !sinks_ && from.low < flight_.home_ground + kSteepBelow;
+  const bool may_be_steep = !has_track_ || may_climb_steeply;
   if (may_be_steep && !is_px4) {
     return {std::min(low, leg.to.low), std::max(high, leg.to.high)};
   }
@@ -441,6 +451,7 @@ void Wing::fill_between(const std::vector<std::vector<Passed>>& passed) {
 void Wing::go(std::size_t command, const char* what, const Leg& leg) {
   flight_.begin(command, what).speed_mps = speed_mps[1];
   does_arrive_ = true;
+  sinks_ = low() > leg.to.high && from_.low >= leg.to.high;
   if (has_track_) {
     cut_corner(leg);
   }
