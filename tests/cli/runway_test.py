@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""runway_test.py PROGRAM SOURCES: take-offs and landings of aeroplanes that `altiplan go` plans.
+"""runway_test.py PROGRAM SOURCES: take-offs and landings that `altiplan go` plans, for each autopilot.
 
 `python3 runway_test.py PROGRAM SOURCES Runway.test_into_the_wind` runs one case."""
 import json
 import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -54,16 +55,19 @@ class Runway(unittest.TestCase):
         self.assertEqual(run.returncode, code, " ".join(arguments) + "\n" + run.stdout + run.stderr)
         return run.stdout + run.stderr
 
-    def go(self, folder, *options, model="flat.asc", code=0):
-        return self.call("go", "--terrain", model, "--crs", "EPSG:4326", *ENDS, "--wing", "60",
-                         "--speed", "15", *options, "-o", folder, code=code)
+    def go(self, folder, *options, model="flat.asc", code=0, vehicle=("--wing", "60", "--speed", "15")):
+        return self.call("go", "--terrain", model, "--crs", "EPSG:4326", *ENDS, *vehicle, *options, "-o",
+                         folder, code=code)
 
     def check(self, folder, *options, model="flat.asc", code=0):
         return self.call("check", f"{folder}/route.plan", "--terrain", model, "--crs", "EPSG:4326",
                          "--min-agl", "50", *options, code=code)
 
+    def mission(self, folder):
+        return json.loads((self.folder / folder / "route.plan").read_text())["mission"]
+
     def items(self, folder):
-        return json.loads((self.folder / folder / "route.plan").read_text())["mission"]["items"]
+        return self.mission(folder)["items"]
 
     def test_into_the_wind(self):
         out = self.go("wind", "--land", "--wind", "4,250")
@@ -122,7 +126,7 @@ class Runway(unittest.TestCase):
         self.assertIn("landing: course 90 degrees", out)
         self.assertNotIn("without DO_LAND_START", out)
         items = self.items("both")
-        self.assertEqual([one["command"] for one in items[:2]], [22, 16])
+        self.assertEqual([one["command"] for one in items[:3]], [22, 178, 16])
         self.assertEqual([one["command"] for one in items[-4:]], [189, 16, 16, 21])
         self.check("both", "--runway", "90", "--params", "p.param")
         self.assertIn("not judged", self.check("both", "--params", "p.param", code=1))
@@ -134,9 +138,79 @@ class Runway(unittest.TestCase):
         self.assertIn("the climb", self.check("both", "--runway", "90", "--params", "p.param",
                                               model="ridge.asc", code=1))
 
+    def test_an_aeroplanes_speed(self):
+        out = self.go("speed", "--land")
+        first, speed = self.items("speed")[:2]
+        self.assertEqual([first["command"], speed["command"]], [16, 178])
+        self.assertEqual(speed["params"][:2], [0, 15])  # through the air
+        self.assertNotIn("--speed: ", out)
+        out = self.go("fast", "--land", vehicle=("--wing", "80", "--speed", "25"))
+        self.assertIn("--speed: ArduPilot plane flies from 9 to 22 m/s", out)
+        self.assertIn("is ignored: the airspeed is from 9 to 22 m/s", self.check("fast"))
+
+    def test_the_circle_at_its_end(self):
+        """A hill rises under the circle, but not under the way to its centre."""
+        self.model("hill.asc", place(45, 250), 200)
+        out = self.go("circle", model="hill.asc")
+        self.assertRegex(out, r"circle: around the goal at \d+ m above its ground: lower it does not pass")
+        self.assertIn("check: pass", out)
+        end = self.items("circle")[-1]
+        self.assertEqual(end["command"], 17)
+        self.assertGreater(end["params"][6], 400 + 60 + 5)
+        self.check("circle", model="hill.asc")
+        self.assertIn("no circle around the goal passes", self.go("low", "--max-agl", "70",
+                                                                  model="hill.asc", code=1))
+
+    def test_a_vtol(self):
+        straight = math.degrees(math.atan2((GOAL[0] - START[0]) * EAST_M, (GOAL[1] - START[1]) * NORTH_M))
+        for name, firmware in (("ardupilot", 3), ("px4", 12)):
+            vehicle = ("--vtol", "60", "--speed", "15", "--autopilot", name)
+            out = self.go(name, vehicle=vehicle)
+            self.assertIn("take-off: straight up to 60 m above the ground, then within 300 m on wings", out)
+            self.assertRegex(out, r"check: pass, flown by (ArduPilot|PX4) VTOL")
+            mission = self.mission(name)
+            self.assertEqual((mission["firmwareType"], mission["vehicleType"]), (firmware, 20))
+            items = mission["items"]
+            self.assertEqual([one["command"] for one in (*items[:3], items[-1])], [84, 178, 16, 85])
+            self.assertEqual((items[0]["frame"], items[0]["params"][6]), (3, 60))
+            self.assertLess(metres_between(items[-1]["params"][5:3:-1], GOAL), 0.1)
+            self.assertAlmostEqual(items[-1]["params"][6], 400, delta=0.1)
+            brakes = metres_between(items[-2]["params"][5:3:-1], GOAL)
+            self.assertGreaterEqual(brakes, 299)
+            heading = out.split("check: --runway ")[1].split()[0] if name == "ardupilot" else "0"
+            self.check(name, "--runway", heading)
+            self.call("check", f"{name}/result.json")
+        self.assertIn("depends on where it points", self.check("ardupilot", code=1))
+        away = str((straight + 30) % 360)
+        self.assertIn("depends on where it points", self.check("ardupilot", "--runway", away, code=1))
+        # A hill on the way on which it changes to wings, and one before the landing.
+        for hill in (place(straight, 150, 0, START), place(straight, -150)):
+            self.model("hill.asc", hill, 90)
+            self.go("hill", vehicle=vehicle, model="hill.asc")
+            self.check("hill", model="hill.asc")
+            self.check(name, model="hill.asc", code=1)
+            shutil.rmtree(self.folder / "hill")
+
+    def test_px4(self):
+        out = self.go("copter", "--autopilot", "px4", vehicle=())
+        self.assertIn("check: pass, flown by PX4 copter", out)
+        mission = self.mission("copter")
+        self.assertEqual((mission["firmwareType"], mission["vehicleType"]), (12, 2))
+        self.assertTrue(all(one["params"][1] == 2 for one in mission["items"] if one["command"] == 16))
+        self.check("copter")
+        self.assertIn("(MIS_TKO_LAND_REQ): add --land", self.go("none", "--autopilot", "px4", code=3))
+        out = self.go("plane", "--autopilot", "px4", "--takeoff", "--land")
+        self.assertIn("check: pass, flown by PX4 plane", out)
+        self.assertEqual(self.mission("plane")["firmwareType"], 12)
+        (self.folder / "p.params").write_text("1\t1\tMIS_TKO_LAND_REQ\t0\t6\n")
+        out = self.go("circle", "--autopilot", "px4", "--params", "p.params")
+        self.assertIn("check: pass, flown by PX4 plane", out)
+
     def test_what_contradicts_itself(self):
         for options, said in ((["--runway", "90"], "--runway: give --takeoff, --land or both"),
                               (["--land", "--runway", "400"], "--runway"),
+                              (["--vtol", "60"], "--vtol: without --wing and --copter"),
+                              (["--autopilot", "other"], "--autopilot"),
                               (["--land", "--to", "8.07,46.58,60"], "--to")):
             self.assertIn(said, self.go("none", *options, code=2))
         self.assertFalse((self.folder / "none").exists())

@@ -60,7 +60,8 @@ TEST(CameraLines, AreOnFromTheirFirstItemToTheirLast) {
   }
   const Polyline first{text.local[1], text.local[2], text.local[3]};
   const Polyline second{text.local[4], text.local[5]};
-  const Plan plan = plan_of(text, {{first, second}, 20, 8});
+  text.commanded_mps = 8;
+  const Plan plan = plan_of(text, {{first, second}, 20});
   std::string commands;
   for (const PlanItem& item : plan.items) {
     commands += item.command == Command::kWaypoint      ? "w"
@@ -70,7 +71,7 @@ TEST(CameraLines, AreOnFromTheirFirstItemToTheirLast) {
   }
   EXPECT_EQ(commands, "wvw+ww-w+w-");
   EXPECT_EQ(plan.items[3].params[0], 20);
-  EXPECT_THROW(static_cast<void>(plan_of(text, {{{{5, 5, 5}, {6, 6, 6}}}, 20, 8})), Error);
+  EXPECT_THROW(static_cast<void>(plan_of(text, {{{{5, 5, 5}, {6, 6, 6}}}, 20})), Error);
 }
 }  // namespace
 }  // namespace altiplan::host

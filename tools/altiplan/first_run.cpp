@@ -206,6 +206,7 @@ void add_first_options(App& command, FirstArguments& arguments, const std::strin
 void read_vehicle(FirstArguments& arguments) {
   if (arguments.parameters) {
     arguments.gate.flight.parameters = host::read_parameters(*arguments.parameters);
+    arguments.wish.parameters = arguments.gate.flight.parameters;
   }
   if (arguments.wind) {
     const std::vector<double> wind = numbers(*arguments.wind).value();

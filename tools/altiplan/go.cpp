@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -28,12 +29,29 @@ struct GoArguments : FirstArguments {
   std::vector<std::string> via;
   bool takeoff = false;
   bool land = false;
+  std::optional<double> vtol_radius_m;
+  std::string autopilot = "ardupilot";
   std::optional<double> runway_deg;
 };
 
-/// A copter takes off and lands straight up and down, whether it is asked to or not.
+/// A copter and a VTOL take off and land straight up and down, whether they are asked to or not.
 bool uses_runway(const GoArguments& arguments, bool is_asked_for) {
-  return is_asked_for && arguments.wish.turn_radius_m;
+  return is_asked_for && arguments.wish.turn_radius_m && !arguments.vtol_radius_m;
+}
+
+/// Takes the vehicle and its autopilot into the wish and the gate.
+void take_vehicle(GoArguments& arguments) {
+  host::RouteWish& wish = arguments.wish;
+  if (arguments.vtol_radius_m && (wish.turn_radius_m || arguments.copter)) {
+    throw UsageError{"--vtol: without --wing and --copter"};
+  }
+  wish.autopilot.airframe = arguments.vtol_radius_m ? formats::Airframe::vtol
+                            : wish.turn_radius_m    ? formats::Airframe::plane
+                                                    : formats::Airframe::copter;
+  wish.turn_radius_m = arguments.vtol_radius_m ? arguments.vtol_radius_m : wish.turn_radius_m;
+  wish.autopilot.firmware =
+      arguments.autopilot == "px4" ? formats::Firmware::px4 : formats::Firmware::ardupilot;
+  arguments.gate.firmware = wish.autopilot.firmware;
 }
 
 /// Throws UsageError for options that do not fit together.
@@ -49,8 +67,9 @@ void expect_runways_fit(GoArguments& arguments) {
   if (arguments.runway_deg && !arguments.takeoff && !arguments.land) {
     throw UsageError{"--runway: give --takeoff, --land or both"};
   }
-  if (arguments.runway_deg && !arguments.wish.turn_radius_m) {
-    throw UsageError{"--runway: a copter needs none; an aeroplane is planned for with --wing"};
+  if (arguments.runway_deg && (!arguments.wish.turn_radius_m || arguments.wish.is_vtol())) {
+    throw UsageError{
+        "--runway: a copter and a VTOL need none; an aeroplane is planned for with --wing"};
   }
 }
 
@@ -61,8 +80,6 @@ host::RouteWish wish_of(const GoArguments& arguments) {
     wish.points.push_back(point_of("--via", via));
   }
   wish.points.push_back(point_of("--to", arguments.to));
-  wish.uses_runways =
-      uses_runway(arguments, arguments.takeoff) || uses_runway(arguments, arguments.land);
   return wish;
 }
 
@@ -100,8 +117,11 @@ std::string course_in_words(double course_deg, const std::optional<host::WishedW
   return words;
 }
 
-/// True if ArduPilot arms with DO_LAND_START, which its default RTL_AUTOLAND prevents.
+/// True if the autopilot arms with DO_LAND_START, which ArduPilot's default RTL_AUTOLAND prevents.
 bool may_name_landing(const GoArguments& arguments) {
+  if (arguments.wish.autopilot.is_px4()) {
+    return true;
+  }
   const auto& parameters = arguments.gate.flight.parameters;
   const auto given = parameters.find("RTL_AUTOLAND");
   return given != parameters.end() && given->second.value != 0;
@@ -109,6 +129,22 @@ bool may_name_landing(const GoArguments& arguments) {
 
 void print_runways(const host::RouteWish& wish, const GoArguments& arguments) {
   const auto metres = [](double value) { return host::with_digits(std::round(value), 6) + " m"; };
+  if (wish.is_vtol()) {
+    const auto above = [&](const host::WishedPoint& point) {
+      return metres(*point.above_ground_m);
+    };
+    const std::string course = host::with_digits(wish.takeoff->course_deg, 6);
+    std::printf("take-off: straight up to %s above the ground, then within %s on wings, %s%s\n",
+                above(wish.points.front()).c_str(), metres(wish.takeoff->level_m).c_str(),
+                course_in_words(wish.takeoff->course_deg, wish.wind).c_str(),
+                wish.autopilot.is_px4()
+                    ? ""
+                    : ("; point it there before; check: --runway " + course).c_str());
+    std::printf("landing: level for %s at %s above the ground, %s, then straight down\n",
+                metres(wish.landing->level_m).c_str(), above(wish.points.back()).c_str(),
+                course_in_words(wish.landing->course_deg, wish.wind).c_str());
+    return;
+  }
   if (wish.takeoff) {
     std::printf("take-off: %s; climbs to %s above the runway within %s; check: --runway %s\n",
                 course_in_words(wish.takeoff->course_deg, wish.wind).c_str(),
@@ -131,13 +167,14 @@ void print_runways(const host::RouteWish& wish, const GoArguments& arguments) {
   }
 }
 
-/// Chooses the courses of take-off and landing. False, which is reported, if there is none.
+/// Chooses the courses of take-off and landing, and how high an aeroplane circles that does not
+/// land. False, which is reported, if there is none.
 bool choose_runways(host::RouteWish& wish, const host::FirstRoute& first, GoArguments& arguments) {
-  const bool takes_off = uses_runway(arguments, arguments.takeoff);
-  const bool lands = uses_runway(arguments, arguments.land);
-  if (!takes_off && !lands) {
+  if (!wish.turn_radius_m) {
     return true;
   }
+  const bool takes_off = wish.is_vtol() || arguments.takeoff;
+  const bool lands = wish.is_vtol() || arguments.land;
   std::vector<LonLat> about;
   for (const host::WishedPoint& point : wish.points) {
     about.push_back({point.lon, point.lat});
@@ -154,13 +191,25 @@ bool choose_runways(host::RouteWish& wish, const host::FirstRoute& first, GoArgu
   if (takes_off) {
     takeoff = choice.takeoff(at(wish.points[0]), at(wish.points[1]), arguments.runway_deg);
   }
+  std::optional<double> circle_m;
   if (lands && choice.refusal().empty()) {
     landing =
         choice.landing(at(wish.points[last]), at(wish.points[last - 1]), arguments.runway_deg);
+  } else if (choice.refusal().empty()) {
+    circle_m = choice.circle(at(wish.points[last]), at(wish.points[last - 1]));
   }
-  if (!choice.refusal().empty()) {
+  if (!choice.refusal().empty() && !circle_m) {
     std::printf("no route: %s\n", choice.refusal().c_str());
     return false;
+  }
+  if (circle_m && !choice.refusal().empty()) {
+    wish.points.back().above_ground_m = circle_m;
+    std::printf("circle: around the goal at %s m above its ground: lower it does not pass\n",
+                host::with_digits(*circle_m, 6).c_str());
+  }
+  if (wish.is_vtol()) {
+    wish.points.front().above_ground_m = std::exchange(takeoff->height_m, 0);
+    wish.points.back().above_ground_m = std::exchange(landing->height_m, 0);
   }
   wish.takeoff = takeoff;
   wish.landing = landing;
@@ -170,27 +219,16 @@ bool choose_runways(host::RouteWish& wish, const host::FirstRoute& first, GoArgu
   return true;
 }
 
-/// The plan with fly-by items for turns, if that passes; else with all of their points.
-std::string few_items(const LoadedRoute& loaded, const RouteExport& route,
-                      const host::Exported& written, const host::GateOptions& gate) {
-  const host::FewestItems fewest = busy("searching the fewest items", [&] {
-    return host::fewest_items(loaded.mission, loaded.source, route.options, written.mission, gate);
-  });
-  if (!fewest.passed()) {
-    return *written.text;
-  }
-  std::printf("items: %zu, which pass as they are flown, in place of %zu\n",
-              fewest.plan.items.size(), host::plan_of(written.mission).items.size());
-  return host::plan_text(fewest.plan);
-}
+/// A route's plan, and what is to be said of it.
+struct Planned {
+  std::optional<std::string> text;  ///< none if the route would not be valid as a mission
+  std::string items;                ///< how many, where these are fewer than its points
+  std::vector<std::string> messages;
+};
 
-/// The mission with a command for the speed, which a copter does not take from a plan.
-std::string with_speed(const host::Exported& written, double speed_mps) {
-  return host::plan_text(host::plan_of(written.mission, host::CameraLines{{}, 0, speed_mps}));
-}
-
-/// The page, and the mission; false if the route would not be valid as a mission.
-bool write_views(const fs::path& folder, const GoArguments& arguments) {
+/// Of the result in the folder: with as few items as pass, turns as items that are flown by; else
+/// with all points.
+Planned plan_in(const fs::path& folder, const GoArguments& arguments) {
   RouteExport route;
   route.result = folder / "result.json";
   route.overrides = arguments.overrides;
@@ -198,66 +236,180 @@ bool write_views(const fs::path& folder, const GoArguments& arguments) {
   const bool is_wing = arguments.wish.turn_radius_m.has_value();
   route.options.takeoff = route.options.land = !is_wing;
   route.options.circles_at_end = is_wing;
-  route.options.landing_start = may_name_landing(arguments);
+  route.options.landing_start = may_name_landing(arguments) && !arguments.wish.is_vtol();
+  route.options.firmware = arguments.wish.autopilot.firmware;
+  route.options.commanded_mps = arguments.wish.speed_mps.value_or(0);
   finish_options(route);
+  const std::optional<LoadedRoute> source = loaded(route, std::nullopt);
+  if (!source) {
+    return {};
+  }
+  host::Exported written = busy("judging the mission", [&] {
+    return host::export_route(source->mission, source->source, route.options);
+  });
+  Planned planned{written.text, "", std::move(written.messages)};
+  if (!written.text) {
+    return planned;
+  }
+  const host::FewestItems fewest = busy("searching the fewest items", [&] {
+    return host::fewest_items(source->mission, source->source, route.options, written.mission,
+                              arguments.gate);
+  });
+  const std::size_t all = host::plan_of(written.mission).items.size();
+  if (fewest.passed() && fewest.plan.items.size() < all) {
+    planned.text = host::plan_text(fewest.plan);
+    planned.items = std::to_string(fewest.plan.items.size()) +
+                    ", which pass as they are flown, in place of " + std::to_string(all);
+  }
+  return planned;
+}
+
+/// By how much heights are off their limits; 0 if a verdict has other reasons.
+double lacking_m(const host::PlanReport& report) {
+  double lacking = 0;
+  for (const host::Finding& finding : report.findings) {
+    const Violation& violation = finding.violation;
+    if (violation.constraint != "ground_clearance" && violation.constraint != "altitude") {
+      return 0;
+    }
+    lacking = std::max(lacking, std::abs(violation.value - violation.limit));
+  }
+  return lacking;
+}
+
+bool is_circle_low(const host::PlanReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [](const host::Finding& finding) { return finding.what == "its circle"; });
+}
+
+/// The search in ever wider corridors, in the end on smaller cells.
+struct Tries {
+  const fs::path& folder;
+  const host::Overrides& overrides;
+  Interrupt& interrupt;
+  host::FirstFiles files;  ///< of the last try
+  host::RunResult result{};
+  int attempt = 0;
+
+  void run(const host::FirstRoute& first) {
+    for (int next = 0; next < host::FirstRoute::kTries; ++next) {
+      if (first.repeats(next)) {
+        continue;
+      }
+      attempt = next;
+      files = first.files(attempt, folder);
+      result = run_in(folder, files, overrides, interrupt);
+      if (interrupt.happened() || !may_be_wider(result)) {
+        return;
+      }
+    }
+  }
+};
+
+void draw_page(const fs::path& folder, const host::Overrides& overrides) {
   const host::Scene scene = busy("drawing the page", [&] {
-    return host::build_scene({host::read_result(route.result, arguments.overrides)});
+    return host::build_scene({host::read_result(folder / "result.json", overrides)});
   });
   host::write_file(folder / "page.html", host::viewer_page(scene.json));
-  const std::optional<LoadedRoute> source = loaded(route, std::nullopt);
-  const std::optional<host::Exported> plan = source ? exported(*source, route) : std::nullopt;
-  if (plan) {
-    host::write_file(folder / "route.plan",
-                     is_wing                    ? few_items(*source, route, *plan, arguments.gate)
-                     : arguments.wish.speed_mps ? with_speed(*plan, *arguments.wish.speed_mps)
-                                                : *plan->text);
+}
+
+/// Throws Error for a mission that the autopilot refuses; warns of a speed that it does not fly.
+void expect_taken(const GoArguments& arguments) {
+  const host::RouteWish& wish = arguments.wish;
+  const host::Parameters value(wish.autopilot, wish.parameters);
+  const bool is_px4 = wish.autopilot.is_px4();
+  if (!wish.turn_radius_m) {
+    return;
   }
-  std::printf("written: %s/: page.html, %sresult.json, scenario.yaml, pipeline.yaml\n",
-              folder.c_str(), plan ? "route.plan, " : "");
-  return plan.has_value();
+  constexpr double kLanding = 2;  // of MIS_TKO_LAND_REQ
+  if (is_px4 && !wish.is_vtol() && !arguments.land && value("MIS_TKO_LAND_REQ") >= kLanding) {
+    throw Error(
+        "--autopilot px4: it takes an aeroplane's mission with a landing alone "
+        "(MIS_TKO_LAND_REQ): add --land");
+  }
+  const char* const min_name = is_px4 ? "FW_AIRSPD_MIN" : "AIRSPEED_MIN";
+  const char* const max_name = is_px4 ? "FW_AIRSPD_MAX" : "AIRSPEED_MAX";
+  const double speed = wish.speed_mps.value_or(value(min_name));
+  if (speed < value(min_name) || speed > value(max_name)) {
+    warn("--speed: " + wish.autopilot.name() + " flies from " +
+         host::with_digits(value(min_name), 4) + " to " + host::with_digits(value(max_name), 4) +
+         " m/s through the air (" + min_name + ", " + max_name +
+         "): give its parameters (--params)");
+  }
 }
 
 int go(GoArguments arguments) {
   read_vehicle(arguments);
+  expect_taken(arguments);
   std::optional<Activity> activity("reading the model");
   host::RouteWish wish = wish_of(arguments);
   std::optional<host::FirstRoute> planned(std::in_place, wish, arguments.overrides.plugin_path);
   if (!choose_runways(wish, *planned, arguments)) {
     return kNoRoute;
   }
-  if (wish.takeoff || wish.landing) {
+  if (wish.turn_radius_m) {
     planned.emplace(wish, arguments.overrides.plugin_path);
   }
-  const host::FirstRoute& first = *planned;
   const fs::path model = fs::path(arguments.terrain.front()).lexically_normal();
   const fs::path folder = new_folder(arguments, model.has_filename() ? model : model.parent_path());
-  host::FirstFiles files = first.files(0, folder);  // nothing is written if that throws
+  host::FirstFiles files = planned->files(0, folder);  // nothing is written if that throws
   activity.reset();
   const std::unique_ptr<host::Unfinished> unfinished = created(folder);
   Interrupt interrupt;
-  host::RunResult result;
-  int tried = 0;
-  for (int attempt = 0; attempt < host::FirstRoute::kTries; ++attempt) {
-    if (first.repeats(attempt)) {
-      continue;
+  Tries tries{folder, arguments.overrides, interrupt, std::move(files)};
+  tries.run(*planned);
+  Planned plan;
+  std::optional<host::PlanReport> report;
+  const auto judge_plan = [&] {
+    plan = plan_in(folder, arguments);
+    report.reset();
+    if (plan.text) {
+      host::write_file(folder / "route.plan", *plan.text);
+      report = judged(folder / "route.plan", *planned, arguments.overrides, arguments.gate);
     }
-    tried = attempt;
-    files = first.files(attempt, folder);
-    result = run_in(folder, files, arguments.overrides, interrupt);
-    if (interrupt.happened() || !may_be_wider(result)) {
+  };
+  if (tries.result.accepted) {
+    judge_plan();
+  }
+  // What an aeroplane's flight lacks of its limits of height, the next route keeps from them.
+  constexpr int kAgain = 2;
+  constexpr double kMore = 3;  // metres
+  for (int n = 0; n < kAgain && wish.turn_radius_m && report && !report->passed(); ++n) {
+    const double lacking = lacking_m(*report);
+    if (lacking == 0) {
       break;
     }
+    host::RouteWish farther = wish;
+    farther.kept_m += std::ceil(lacking) + kMore;
+    if (auto& circle_m = farther.points.back().above_ground_m; is_circle_low(*report) && circle_m) {
+      *circle_m += std::ceil(lacking) + kMore;
+    }
+    host::FirstRoute next(farther, arguments.overrides.plugin_path);
+    if (interrupt.happened() ||
+        (next.flown_margin() == planned->flown_margin() && !is_circle_low(*report))) {
+      break;
+    }
+    tries.run(next);
+    if (!tries.result.accepted) {
+      tries.run(*planned);
+      break;
+    }
+    wish = farther;
+    planned.emplace(std::move(next));
+    judge_plan();
   }
+  const host::FirstRoute& first = *planned;
+  const host::RunResult& result = tries.result;
   std::vector<std::string> reasons;
   if (!result.accepted && !interrupt.happened()) {
-    reasons = reasons_of({wish, arguments.overrides, folder, tried}, interrupt);
+    reasons = reasons_of({wish, arguments.overrides, folder, tries.attempt}, interrupt);
   }
   interrupt.finish();
-  for (const std::string& line : files.choices) {
+  for (const std::string& line : tries.files.choices) {
     std::printf("%s\n", line.c_str());
   }
   print_runways(wish, arguments);
-  print_zones(result, files.zone_layers);
+  print_zones(result, tries.files.zone_layers);
   if (interrupt.happened()) {
     return kInterrupted;
   }
@@ -281,15 +433,19 @@ int go(GoArguments arguments) {
   if (const std::string voids = first.over_voids(route); !voids.empty()) {
     warn(voids);
   }
-  const bool is_mission = write_views(folder, arguments);
+  say(plan.messages);
+  if (!plan.items.empty()) {
+    std::printf("items: %s\n", plan.items.c_str());
+  }
+  draw_page(folder, arguments.overrides);
+  std::printf("written: %s/: page.html, %sresult.json, scenario.yaml, pipeline.yaml\n",
+              folder.c_str(), plan.text ? "route.plan, " : "");
   unfinished->is_finished();
-  if (!is_mission) {
+  if (!report) {
     return kNoRoute;
   }
-  const host::PlanReport report =
-      judged(folder / "route.plan", first, arguments.overrides, arguments.gate);
-  print_check(report);
-  return report.passed() ? kDone : kNoRoute;
+  print_check(*report);
+  return report->passed() ? kDone : kNoRoute;
 }
 
 void add_points(App& command, GoArguments& arguments) {
@@ -312,17 +468,29 @@ void add_points(App& command, GoArguments& arguments) {
 void add_go(App& app, Action& action) {
   const auto prepare = [](GoArguments& given) {
     expect_permissions(given.wish.permitted, given.avoid);
+    take_vehicle(given);
     expect_runways_fit(given);
   };
   auto [command, arguments] = add_command<GoArguments>(
       app, action, "go", "a first route between two points, without YAML", go, prepare);
   add_points(command, arguments);
   add_first_options(command, arguments, "the model's name");
+  command
+      .add_option("--vtol RADIUS", arguments.vtol_radius_m,
+                  "plan for a VTOL with this turn radius on wings, which takes off and lands in "
+                  "hover")
+      ->check(number_from(1, 5000));
+  command
+      .add_option("--autopilot NAME", arguments.autopilot,
+                  "who flies it: ardupilot (default) or px4")
+      ->check(Check::one_of({"ardupilot", "px4"}));
   command.add_flag("--takeoff", arguments.takeoff,
-                   "begin on the ground (a copter does in any case)");
-  command.add_flag("--land", arguments.land,
-                   "end on the ground (a copter does in any case); an aeroplane's approach is "
-                   "chosen by wind, ground and zones");
+                   "begin on the ground (a copter and a VTOL do in any case)");
+  command.add_flag(
+      "--land", arguments.land,
+      "end on the ground (a copter and a VTOL do in any case); an aeroplane's approach "
+      "is "
+      "chosen by wind, ground and zones");
   command
       .add_option("--runway DEGREES", arguments.runway_deg,
                   "course of an aeroplane's take-off and landing, clockwise from north (default: "

@@ -23,12 +23,6 @@ const std::map<std::string, formats::AltitudeFrame>& altitudes() {
   return kAll;
 }
 
-void say(const std::string& message) {
-  if (log_level() != LogLevel::quiet) {
-    std::cerr << "altiplan: " << message << '\n';
-  }
-}
-
 /// Of what flies it, as it is judged: not a copter, if that is not known.
 std::optional<formats::Airframe> airframe_of(const JudgedPlan& judged) {
   std::optional<formats::Airframe> airframe = judged.gate.airframe;
@@ -63,6 +57,14 @@ std::optional<host::ExportSource> source_of(const host::StoredResult& stored, bo
 }
 
 }  // namespace
+
+void say(const std::vector<std::string>& messages) {
+  for (const std::string& message : messages) {
+    if (log_level() != LogLevel::quiet) {
+      std::cerr << "altiplan: " << message << '\n';
+    }
+  }
+}
 
 void add_route_export(App& command, RouteExport& route, bool takes_missions) {
   const std::string missions = takes_missions ? ", or with --terrain a mission (.plan, …)" : "";
@@ -124,7 +126,7 @@ std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<
   expect_apart(out, "-o", files_of(stored));
   std::optional<host::ExportSource> source = source_of(stored, route.flight);
   if (!source) {
-    say(stored.file + " contains no " + (route.flight ? "flight" : "accepted route"));
+    say({stored.file + " contains no " + (route.flight ? "flight" : "accepted route")});
     return std::nullopt;
   }
   host::Config config = host::load_config(stored.pipeline, stored.overrides);
@@ -146,9 +148,7 @@ std::optional<host::Exported> exported(const LoadedRoute& loaded, const RouteExp
   host::Exported exported = busy("judging the mission", [&] {
     return host::export_route(loaded.mission, loaded.source, route.options);
   });
-  for (const std::string& message : exported.messages) {
-    say(message);
-  }
+  say(exported.messages);
   return exported.text ? std::optional(std::move(exported)) : std::nullopt;
 }
 
@@ -168,12 +168,11 @@ std::optional<host::Plan> fewest_plan(const LoadedRoute& loaded, const RouteExpo
     return host::export_route(loaded.mission, loaded.source, all);
   });
   if (!written.text) {
-    for (const std::string& message : written.messages) {
-      say(message);
-    }
+    say(written.messages);
     return std::nullopt;
   }
   host::GateOptions gate = options.gate;
+  all.firmware = gate.firmware.value_or(all.firmware);
   if (options.parameters) {
     gate.flight.parameters = host::read_parameters(*options.parameters);
   }
@@ -188,14 +187,13 @@ std::optional<host::Plan> fewest_plan(const LoadedRoute& loaded, const RouteExpo
     return std::nullopt;
   }
   if (route.options.max_items && items > *route.options.max_items) {
-    say("not written: " + std::to_string(items) +
-        " items are the fewest found that pass, more than "
-        "--max-items " +
-        std::to_string(*route.options.max_items));
+    say({"not written: " + std::to_string(items) +
+         " items are the fewest found that pass, more than --max-items " +
+         std::to_string(*route.options.max_items)});
     return std::nullopt;
   }
-  say(how + ": pass as " + fewest.report.autopilots.front().name() + " flies them (" +
-      std::to_string(fewest.judged) + " plans judged)");
+  say({how + ": pass as " + fewest.report.autopilots.front().name() + " flies them (" +
+       std::to_string(fewest.judged) + " plans judged)"});
   return fewest.plan;
 }
 
@@ -222,10 +220,10 @@ host::Exported exported_route(const JudgedPlan& judged, const RouteExport& route
     }
     warn("speeds and times, if written, are those of the fastest flight");
   }
-  host::Exported written = host::export_route(world, source, route.options);
-  for (const std::string& message : written.messages) {
-    say(message);
-  }
+  host::ExportOptions options = route.options;
+  options.firmware = judged.gate.firmware.value_or(options.firmware);
+  host::Exported written = host::export_route(world, source, options);
+  say(written.messages);
   return written;
 }
 
@@ -234,10 +232,7 @@ std::optional<host::Plan> plan_of_line(const JudgedPlan& judged, const RouteExpo
   if (!written.text) {
     return std::nullopt;
   }
-  host::Plan plan = host::plan_of(written.mission);
-  if (judged.gate.firmware == formats::Firmware::px4) {
-    plan.autopilot = host::Plan::kPx4;
-  }
+  const host::Plan plan = host::plan_of(written.mission);
   JudgedPlan flown = judged;
   flown.mission = formats::read_mission("route.plan", host::plan_text(plan));
   flown.report = busy("judging the plan", [&] {

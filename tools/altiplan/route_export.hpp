@@ -35,6 +35,8 @@ struct LoadedRoute {
 /// None, which is reported: there is no route. `out`, if it is a file, must not be one of those
 /// that are read.
 std::optional<LoadedRoute> loaded(const RouteExport& route, const std::optional<std::string>& out);
+/// Reports on stderr.
+void say(const std::vector<std::string>& messages);
 /// Judges and writes the route, and reports the verdict on stderr. None: it would not be valid as
 /// written.
 std::optional<host::Exported> exported(const LoadedRoute& loaded, const RouteExport& route);

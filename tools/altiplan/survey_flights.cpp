@@ -90,6 +90,9 @@ bool write_plans(const fs::path& folder, const SurveyArguments& arguments,
   std::optional<LoadedRoute> source = loaded(route, std::nullopt);
   std::vector<Flight> flights = flights_of(surveyed.result, first);
   const host::SurveyLines& lines = first.lines();
+  if (source && !is_wing) {  // which flies at its own speed
+    route.options.commanded_mps = source->mission.request.vehicle.speed_mps;
+  }
   for (std::size_t i = 0; source && i < flights.size(); ++i) {
     Flight& flight = flights[i];
     flight.file = flights.size() == 1 ? "route.plan" : "route-" + std::to_string(i + 1) + ".plan";
@@ -100,11 +103,9 @@ bool write_plans(const fs::path& folder, const SurveyArguments& arguments,
     if (!written) {
       return false;
     }
-    host::CameraLines camera{flight.lines, lines.trigger_m,
-                             source->mission.request.vehicle.speed_mps};
-    if (is_wing) {  // it flies at its own speed
+    host::CameraLines camera{flight.lines, lines.trigger_m};
+    if (is_wing) {
       constexpr double kTurnsWithin = 15;
-      camera.speed_mps = 0;
       camera.within_m = kTurnsWithin;
     }
     const std::string plan = host::plan_text(host::plan_of(written->mission, camera));

@@ -51,7 +51,7 @@ void describe_course(Fields& f, double& course_deg, double& height_m, const char
       .range(0, 360)
       .required()
       .doc("over the ground, clockwise from north");
-  f("height_m", height_m).unit("m").range(1, 3000).required().doc(height);
+  f("height_m", height_m).unit("m").range(0, 3000).required().doc(height);
 }
 void describe_slope(Fields& f, const char* name, double& angle_deg, const char* doc) {
   f(name, angle_deg).unit("deg").range(0.5, 45).doc(doc);
@@ -61,6 +61,8 @@ void describe_slope(Fields& f, const char* name, double& angle_deg, const char* 
 void TakeOffEntry::describe(Fields& f) {
   describe_course(f, course_deg, height_m, "above the start, where the climb ends");
   describe_slope(f, "climb_deg", climb_deg, "angle of the climb, over the ground");
+  f("level_m", level_m).unit("m").range(0, 1e5).doc("of a VTOL: level flight on the course");
+  f.check((height_m > 0) != (level_m > 0), "expected height_m above 0, or level_m");
 }
 
 void LandingEntry::describe(Fields& f) {
@@ -74,7 +76,8 @@ void StartEntry::describe(Fields& f) {
   describe_heading(f, heading_deg, "heading at the start, clockwise from north; default: any");
   f("loiter", loiter).doc("circle around the point, which the route leaves tangentially");
   f.check(!loiter || !heading_deg, "a route leaves a loiter circle anywhere: remove heading_deg");
-  f("takeoff", takeoff).doc("take-off of an aeroplane from the point, which is on the ground");
+  f("takeoff", takeoff)
+      .doc("take-off of an aeroplane from the point, which is on the ground; of a VTOL in hover");
   f.check(!takeoff || (!loiter && !heading_deg),
           "a take-off has a course: remove loiter and heading_deg");
 }
@@ -89,7 +92,8 @@ void GoalEntry::describe(Fields& f) {
   f("loiter", loiter).doc("circle around the point, which the route joins tangentially");
   f.check(!loiter || (!heading_deg && tolerance_m == 0),
           "a route joins a loiter circle anywhere: remove heading_deg and tolerance_m");
-  f("landing", landing).doc("landing of an aeroplane at the point, which is on the ground");
+  f("landing", landing)
+      .doc("landing of an aeroplane at the point, which is on the ground; of a VTOL in hover");
   f.check(!landing || (!loiter && !heading_deg),
           "a landing has a course: remove loiter and heading_deg");
 }
@@ -534,6 +538,10 @@ void ScenarioFile::describe(Fields& f) {
   f.check(!has_runway || (vehicle.has_wing() && !task && !level_flight_at_m),
           "takeoff and landing are an aeroplane's (vehicle.wing), without task and "
           "level_flight_at_m");
+  const bool is_vtol = vehicle.type == VehicleType::vtol;
+  f.check((!start.takeoff || is_vtol == (start.takeoff->height_m == 0)) &&
+              (!goal.landing || is_vtol == (goal.landing->height_m == 0)),
+          "of a VTOL, takeoff and landing have height_m: 0, of other aeroplanes more");
   f.check(std::none_of(via.begin(), via.end(),
                        [](const GoalEntry& point) { return point.landing.has_value(); }),
           "a landing ends the route: only the goal has one");

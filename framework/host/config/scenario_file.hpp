@@ -60,11 +60,13 @@ struct LoiterEntry {
   void describe(Fields& f);
 };
 
-/// A take-off of an aeroplane: straight from the start to a height.
+/// A take-off of an aeroplane: straight from the start to a height. A VTOL's begins where it is in
+/// hover, level.
 struct TakeOffEntry {
   double course_deg = 0;
   double height_m = 0;
   double climb_deg = 4;
+  double level_m = 0;
   void describe(Fields& f);
 };
 
@@ -77,7 +79,7 @@ struct StartEntry {
   void describe(Fields& f);
 };
 
-/// Its landing: a level approach, then straight down to the goal.
+/// Its landing: a level approach, then straight down to the goal; a VTOL's ends in hover.
 struct LandingEntry {
   double course_deg = 0;
   double height_m = 0;

@@ -14,7 +14,8 @@ namespace altiplan::host {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kCopterSpeed = 10;
+constexpr double kCopterSpeed = 10;    // as ArduPilot's WP_SPD is by default,
+constexpr double kPx4CopterSpeed = 5;  // and PX4's MPC_XY_CRUISE
 constexpr double kCopterRadius = 1;
 constexpr double kBank = 30;  // degrees
 constexpr double kMaxBank = 60;
@@ -27,8 +28,8 @@ constexpr double kFlownWithin = 3;
 /// From zones, its radius included: it leaves its line at corners, by what autopilots accept.
 constexpr double kCopterFromZones = 5;
 
-/// The same of the heights of an aeroplane between its runways, which lag behind slopes.
-constexpr double kRunwayHeightWithin = 6;
+/// The same of the heights of an aeroplane, which lag behind slopes.
+constexpr double kWingHeightWithin = 6;
 
 /// Of an aeroplane's turn radius: clearance from islands, and how far rows go on beyond an area.
 constexpr double kIslandRadii = 1.2;
@@ -170,8 +171,8 @@ Vec3 FirstRoute::local(const WishedPoint& point) const {
 }
 
 bool FirstRoute::is_on_ground(const WishedPoint& at) const {
-  return (wish_.takeoff && &at == &wish_.points.front()) ||
-         (wish_.landing && &at == &wish_.points.back());
+  return !wish_.is_vtol() && ((wish_.takeoff && &at == &wish_.points.front()) ||
+                              (wish_.landing && &at == &wish_.points.back()));
 }
 
 void FirstRoute::reach_runways() {
@@ -192,7 +193,7 @@ double FirstRoute::speed_mps() const {
     return std::min(kCopterSpeed, std::max(0.1, std::floor(lines_->max_mps * 10) / 10));
   }
   if (!wish_.turn_radius_m) {
-    return kCopterSpeed;
+    return wish_.autopilot.is_px4() ? kPx4CopterSpeed : kCopterSpeed;
   }
   const double speed = std::sqrt(*wish_.turn_radius_m * kGravity * std::tan(radians(kBank)));
   return std::ceil(speed * 100) / 100;
@@ -282,21 +283,36 @@ std::string FirstRoute::environment(const Box& volume, const fs::path& folder) c
   return text;
 }
 
+std::string FirstRoute::climb() const {
+  const auto rates = [](double climb_mps, double sink_mps) {
+    return ", climb_mps: " + text_of(climb_mps) + ", sink_mps: " + text_of(sink_mps);
+  };
+  if (wish_.climb_mps) {
+    return rates(*wish_.climb_mps, *wish_.climb_mps);
+  }
+  if (!wish_.turn_radius_m || lines_) {
+    return "";
+  }
+  const HeldRates held =
+      held_rates(wish_.autopilot, wish_.parameters, corridor_.box(0).max.z() + heights_.ends_m);
+  const double in_wind = speed_mps() / (speed_mps() + (wish_.wind ? wish_.wind->speed_mps : 0));
+  const auto down = [&](double rate) { return std::floor(100 * rate * in_wind) / 100; };
+  return rates(down(held.climb_mps), down(held.sink_mps));
+}
+
 std::string FirstRoute::vehicle() const {
-  const std::string climb = wish_.climb_mps ? ", climb_mps: " + text_of(*wish_.climb_mps) +
-                                                  ", sink_mps: " + text_of(*wish_.climb_mps)
-                                            : "";
   const std::string energy = wish_.battery_wh && wish_.power_w && !lines_
                                  ? ", energy: {capacity_wh: " + text_of(*wish_.battery_wh) +
                                        ", reserve: " + text_of(wish_.reserve) +
                                        ", power_w: " + text_of(*wish_.power_w) + "}"
                                  : "";
-  return (wish_.turn_radius_m
-              ? "{radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
-                    ", bank_deg: " + text_of(bank_deg()) + "}"
-              : "{radius_m: " + text_of(kCopterRadius) +
-                    ", performance: arducopter, speed_mps: " + text_of(speed_mps())) +
-         climb + energy + "}";
+  return (wish_.turn_radius_m ? std::string(wish_.is_vtol() ? "{type: vtol, " : "{") +
+                                    "radius_m: 2, wing: {airspeed_mps: " + text_of(speed_mps()) +
+                                    ", bank_deg: " + text_of(bank_deg()) + "}"
+                              : "{radius_m: " + text_of(kCopterRadius) + ", performance: " +
+                                    (wish_.autopilot.is_px4() ? "px4_mc" : "arducopter") +
+                                    ", speed_mps: " + text_of(speed_mps())) +
+         climb() + energy + "}";
 }
 
 std::string FirstRoute::point(const WishedPoint& at) const {
@@ -316,9 +332,13 @@ double FirstRoute::flown_margin() const {
     constexpr double kStored = 0.05;  // of what is drawn, numbers of files may be off
     return lines_->off_m - lines_->drawn_off_m(*wish_.survey) - kStored;
   }
-  double margin = wish_.uses_runways ? kRunwayHeightWithin : kFlownWithin;
+  double margin = wish_.turn_radius_m && !lines_ ? kWingHeightWithin : kFlownWithin;
+  margin += wish_.kept_m;
   for (const WishedPoint& at : wish_.points) {
-    const double height = at.above_ground_m.value_or(heights_.ends_m);
+    const double slope = &at == &wish_.points.front() && wish_.takeoff  ? wish_.takeoff->height_m
+                         : &at == &wish_.points.back() && wish_.landing ? wish_.landing->height_m
+                                                                        : 0;
+    const double height = slope > 0 ? slope : at.above_ground_m.value_or(heights_.ends_m);
     margin =
         std::min({margin, height - heights_.min_m, heights_.max_m.value_or(kInfinity) - height});
   }
@@ -349,12 +369,15 @@ std::string FirstRoute::world(const std::string& environment, const Box& volume)
 
 std::string FirstRoute::ends() const {
   const auto& takeoff = wish_.takeoff;
-  const std::string start = "start: " + point(wish_.points.front()) +
-                            (takeoff ? ", takeoff: {course_deg: " + text_of(takeoff->course_deg) +
-                                           ", height_m: " + text_of(takeoff->height_m) +
-                                           ", climb_deg: " + text_of(takeoff->climb_deg) + "}"
-                                     : "") +
-                            "}\n";
+  const std::string start =
+      "start: " + point(wish_.points.front()) +
+      (takeoff ? ", takeoff: {course_deg: " + text_of(takeoff->course_deg) +
+                     ", height_m: " + text_of(takeoff->height_m) +
+                     (wish_.is_vtol() ? ", level_m: " + text_of(takeoff->level_m)
+                                      : ", climb_deg: " + text_of(takeoff->climb_deg)) +
+                     "}"
+               : "") +
+      "}\n";
   if (lines_) {
     const std::string back = "goal: " + point(wish_.points.front()) + ", tolerance_m: 1}\n";
     const std::string task = survey_task();
@@ -370,8 +393,9 @@ std::string FirstRoute::ends() const {
   }
   const auto& landing = wish_.landing;
   return text + "goal: " + point(wish_.points.back()) +
-         (landing ? ", landing: {course_deg: " + text_of(landing->course_deg) + ", height_m: " +
-                        text_of(landing->height_m) + ", glide_deg: " + text_of(landing->glide_deg) +
+         (landing ? ", landing: {course_deg: " + text_of(landing->course_deg) +
+                        ", height_m: " + text_of(landing->height_m) +
+                        (wish_.is_vtol() ? "" : ", glide_deg: " + text_of(landing->glide_deg)) +
                         ", level_m: " + text_of(landing->level_m) + "}"
                   : "") +
          reached;
@@ -496,10 +520,11 @@ std::vector<std::string> FirstRoute::choices(int attempt, const Box& volume,
   const std::string wind = wish_.wind ? ", wind of " + text_of(wish_.wind->speed_mps) +
                                             " m/s from " + text_of(wish_.wind->from_deg) + " deg"
                                       : "";
-  const std::string vehicle = wish_.turn_radius_m
-                                  ? "wing with turns of " + whole(*wish_.turn_radius_m) +
-                                        " m or more, " + text_of(speed_mps()) + " m/s" + wind
-                                  : "copter of 1 m radius, " + text_of(speed_mps()) + " m/s" + wind;
+  const std::string vehicle =
+      wish_.turn_radius_m
+          ? (wish_.is_vtol() ? "VTOL" : "wing") + std::string(" with turns of ") +
+                whole(*wish_.turn_radius_m) + " m or more, " + text_of(speed_mps()) + " m/s" + wind
+          : "copter of 1 m radius, " + text_of(speed_mps()) + " m/s" + wind;
   return {"terrain: " + ground + "; frame: " + corridor_.frame_in_words(),
           "volume: " + with_digits(size.x(), 3) + " x " + with_digits(size.y(), 3) + " km, " +
               (corridor_.is_all(volume) ? "all of the model" : kWidth[kTry[attempt].width]) + ", " +

@@ -56,6 +56,7 @@ class FirstRoute {
   /// The wish's files of zones by the ids of their layers.
   std::vector<std::string> zone_layers() const;
   std::string environment(const Box& volume, const std::filesystem::path& folder) const;
+  std::string climb() const;
   std::string vehicle() const;
   std::string point(const WishedPoint& at) const;
   bool is_on_ground(const WishedPoint& at) const;

@@ -40,8 +40,8 @@ WishedHeights heights_of(const RouteWish& wish) {
     throw Error("--max-agl: " + metres(max) + " leaves no height above --min-agl, " +
                 metres(heights.min_m) + ": raise it");
   }
-  heights.ends_m =
-      std::min(std::max(heights.ends_m, heights.min_m + kAboveMin), (heights.min_m + max) / 2);
+  heights.ends_m = std::min(std::max(heights.ends_m, heights.min_m + kAboveMin + wish.kept_m),
+                            (heights.min_m + max) / 2);
   for (const WishedPoint& point : wish.points) {
     const double height = point.above_ground_m.value_or(heights.ends_m);
     if (height < heights.min_m || height > max) {

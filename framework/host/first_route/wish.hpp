@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/autopilot/flown_mission.hpp"
 #include "host/config/scenario_file.hpp"
 #include "host/first_route/survey.hpp"
 
@@ -35,6 +36,8 @@ struct RouteWish {
   std::vector<WishedPoint> points;             ///< start, via points, goal
   std::optional<double> min_above_ground_m;
   std::optional<double> max_above_ground_m;
+  formats::Autopilot autopilot;         ///< of an aeroplane or a VTOL with a turn radius
+  ParameterFile parameters;             ///< of the autopilot
   std::optional<double> turn_radius_m;  ///< of an aeroplane; none: a copter
   std::optional<double> speed_mps;      ///< through the air; none: chosen
   std::optional<double> climb_mps;      ///< greatest rates of climb and sink; none: an autopilot's
@@ -44,10 +47,12 @@ struct RouteWish {
   double reserve = 0.2;                ///< share of the battery
   std::optional<std::string> planner;  ///< none: chosen
   std::optional<std::string> start_time;
-  bool uses_runways = false;            ///< an aeroplane's, before they are chosen, too
-  std::optional<TakeOffEntry> takeoff;  ///< of an aeroplane, from the ground of the start
-  std::optional<LandingEntry> landing;  ///< and on that of the goal
+  std::optional<TakeOffEntry> takeoff;  ///< of an aeroplane, from the ground of the start,
+  std::optional<LandingEntry> landing;  ///< and on that of the goal; of a VTOL in hover above them
   std::optional<SurveyWish> survey;     ///< in place of a route to a goal
+  double kept_m = 0;  ///< from the limits of height besides, for what a flight lacked before
+
+  bool is_vtol() const { return autopilot.airframe == formats::Airframe::vtol; }
 };
 
 /// Heights above ground, metres.

@@ -92,9 +92,6 @@ class FewestSearch {
     for (result.judged = 1;; ++result.judged) {
       const std::vector<std::size_t> chosen = fewest();
       result.plan = plan_of(text_of(chosen, written));
-      if (gate.firmware == formats::Firmware::px4) {
-        result.plan.autopilot = Plan::kPx4;
-      }
       const formats::MissionFile file = formats::read_mission("route.plan", plan_text(result.plan));
       result.report = judge_plan("route.plan", file, known_, gate);
       if (result.passed() || result.judged == kMaxPlans || !refuse(result, file, chosen)) {

@@ -259,6 +259,8 @@ Exported export_route(const Mission& mission, const ExportSource& wanted,
   MissionText text;
   text.speed_mps = mission.request.vehicle.speed_mps;
   text.vehicle = mission.vehicle_type;
+  text.firmware = options.firmware;
+  text.commanded_mps = options.commanded_mps;
   if (const auto& wing = mission.request.vehicle.wing) {
     text.climb_deg = degrees(wing->climb);
   }

@@ -28,6 +28,8 @@ struct ExportOptions {
   /// Altitude of home above sea level; default: the ground below the start.
   std::optional<double> home_altitude_m;
   std::optional<std::size_t> max_items;
+  formats::Firmware firmware = formats::Firmware::ardupilot;  ///< of plans
+  double commanded_mps = 0;  ///< speed that a plan commands behind its first item; 0: none
 
   /// The reason why the options cannot be combined; "" if they can.
   std::string problem() const;

@@ -57,6 +57,7 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
     items.push_back({kind, place(each.at), 0, "", each.circle});
   }
   const bool has_runways = mission.runways.has_any() && options.format->has_commands();
+  const bool is_vtol = mission.vehicle_type == VehicleType::vtol;
   if (options.takeoff || (has_runways && mission.runways.climbs_to)) {
     if (items.front().circle) {
       throw Error("--takeoff: the route begins on a loiter circle, give --arcs points");
@@ -68,8 +69,16 @@ std::vector<formats::MissionItem> items_of(const std::vector<MissionPlace>& plac
     const Vec3 middle = (places.front().at + end) / 2;
     items.front().at = place({middle.x(), middle.y(), end.z()});
   }
+  if (is_vtol && items.front().kind == MissionItem::Kind::takeoff) {
+    // ArduPilot's climbs by the number, whatever its frame.
+    formats::MissionPoint& at = items.front().at;
+    at.altitude_m = places.front().at.z() - place.home().altitude_m;
+    at.frame = formats::AltitudeFrame::home;
+  }
   if (has_runways && mission.runways.glides_from) {
     items.back().kind = MissionItem::Kind::land;
+    items.back().at =
+        place(is_vtol ? landing(mission, {places.back().at}, place) : places.back().at);
   } else if (options.land) {
     const Vec3 down = landing(mission, {places.back().at}, place);
     items.push_back({MissionItem::Kind::land, place(down), 0, ""});
@@ -204,12 +213,15 @@ Route with_waits(const Route& route, const formats::MissionFile& file) {
   return waiting;
 }
 
-/// A take-off item stands on the way to the end of the climb.
-Route from_runway(const Route& route, const Vec3& start) {
-  Route whole{start};
-  whole.push_back(Leg::straight(start, route[1]));
-  for (std::size_t n = 1; n < route.leg_count(); ++n) {
-    whole.push_back(route.leg(n));
+/// A take-off item stands on the way to the end of the climb; a VTOL's landing below the end.
+Route along_runways(const Route& read, const Route& own, const Mission& mission) {
+  const Runways& runways = mission.runways;
+  const bool sinks = runways.glides_from && mission.vehicle_type == VehicleType::vtol;
+  Route whole{runways.climbs_to ? own.front() : read.front()};
+  for (std::size_t n = 0; n < read.leg_count(); ++n) {
+    const bool is_end = (n == 0 && runways.climbs_to) || (n + 1 == read.leg_count() && sinks);
+    const Vec3& to = n + 1 == read.leg_count() && sinks ? own.back() : read[n + 1];
+    whole.push_back(is_end ? Leg::straight(whole.back(), to) : read.leg(n));
   }
   return whole;
 }
@@ -244,8 +256,8 @@ struct Attempt {
       if (source.route.waits()) {
         read.route = with_waits(read.route, read_mission_file(name, now));
       }
-      if (mission.runways.climbs_to && options.format->has_commands()) {
-        read.route = from_runway(read.route, source.route.front());
+      if (mission.runways.has_any() && options.format->has_commands()) {
+        read.route = along_runways(read.route, source.route, mission);
       }
       const std::string problem_now =
           problem_of(mission, source, read.route,

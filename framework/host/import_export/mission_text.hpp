@@ -41,6 +41,8 @@ struct MissionText {
   std::map<std::size_t, ItemStop> stops;  ///< by item, in place of its wait
   std::optional<double> start_time_s;     ///< of the route, since 1970-01-01 UTC
   bool landing_start = false;             ///< the last three items are an approach and a landing
+  formats::Firmware firmware = formats::Firmware::ardupilot;
+  double commanded_mps = 0;  ///< behind the first item; 0: no speed is
 };
 
 /// The value of `rounded_text`.

@@ -50,10 +50,13 @@ std::array<double, 4> params_of(const MissionItem& item, const MissionText& text
   if (item.kind == MissionItem::Kind::takeoff && text.vehicle == VehicleType::plane) {
     return {text.climb_deg, 0, 0, unset};  // pitch
   }
+  constexpr double kAcceptance = 2;  // metres: PX4's copter cuts corners by 10, ArduPilot's by 2
+  const bool cuts = text.firmware == formats::Firmware::px4 &&
+                    text.vehicle == VehicleType::copter && item.kind == MissionItem::Kind::waypoint;
   if (!item.circle) {
     // Hold time, acceptance radius, pass-by distance, heading. ArduPilot refuses loiters with a
     // parameter that is not a number.
-    return {0, 0, 0, item.kind == MissionItem::Kind::loiter ? 0 : unset};
+    return {0, cuts ? kAcceptance : 0, 0, item.kind == MissionItem::Kind::loiter ? 0 : unset};
   }
   const double radius = radius_of(*item.circle, text.decimals.metres);
   switch (item.circle->until) {
@@ -69,12 +72,13 @@ std::array<double, 4> params_of(const MissionItem& item, const MissionText& text
 
 constexpr int kMissionFrame = 2;  // MAV_FRAME_MISSION: without a place
 
-PlanItem speed_item(double speed_mps, int decimals) {
-  constexpr double kOverGround = 1;
+/// Over the ground; an aeroplane's is through the air: ArduPilot's takes the other for a minimum.
+PlanItem speed_item(double speed_mps, const MissionText& text) {
+  const double over_ground = text.vehicle == VehicleType::copter ? 1 : 0;
   constexpr double kSameThrottle = -1;
   return {Command::kChangeSpeed,
           kMissionFrame,
-          {kOverGround, rounded(speed_mps, decimals), kSameThrottle}};
+          {over_ground, rounded(speed_mps, text.decimals.metres), kSameThrottle}};
 }
 
 PlanItem item_of(const MissionItem& item, const MissionText& text) {
@@ -162,6 +166,7 @@ Plan plan_of(const MissionText& text) {
   plan.vehicle = text.vehicle == VehicleType::plane  ? kFixedWing
                  : text.vehicle == VehicleType::vtol ? kVtol
                                                      : kQuadrotor;
+  plan.autopilot = text.firmware == formats::Firmware::px4 ? Plan::kPx4 : Plan::kArduPilot;
   plan.speed_mps = text.speed_mps;
   plan.decimals = text.decimals;
   plan.home = text.mission.home;
@@ -173,13 +178,16 @@ Plan plan_of(const MissionText& text) {
     }
     if (item.speed_mps > 0 && item.speed_mps != speed_mps) {
       speed_mps = item.speed_mps;
-      plan.items.push_back(speed_item(speed_mps, text.decimals.metres));
+      plan.items.push_back(speed_item(speed_mps, text));
     }
     plan.items.push_back(item_of(item, text));
     if (const auto stop = text.stops.find(n); stop != text.stops.end()) {
       add_stop(stop->second, plan.items);
     } else if (n < text.holds_s.size() && text.holds_s[n] > 0) {
       plan.items.back().params[0] = text.holds_s[n];
+    }
+    if (n == 0 && text.commanded_mps > 0) {
+      plan.items.push_back(speed_item(text.commanded_mps, text));
     }
   }
   plan.fence = fence_of(text.mission.zones, text.decimals);
@@ -191,15 +199,16 @@ Plan plan_of(const MissionText& text, const CameraLines& camera) {
   std::vector<PlanItem> items;
   std::size_t line = 0;
   bool is_on = false;
-  for (std::size_t n = 0; n < plan.items.size(); ++n) {
-    items.push_back(plan.items[n]);
-    if (n == 0 && camera.speed_mps > 0) {
-      items.push_back(speed_item(camera.speed_mps, text.decimals.metres));
+  std::size_t n = 0;  // of the places
+  for (std::size_t i = 0; i < plan.items.size(); ++i) {
+    items.push_back(plan.items[i]);
+    if (i + 1 < plan.items.size() && plan.items[i + 1].command == Command::kChangeSpeed) {
+      items.push_back(plan.items[++i]);
     }
     const auto is_at = [&](const Vec3& p) {
       const double away = (text.local[n] - p).norm();
       return away < camera.within_m &&
-             (n + 1 == plan.items.size() || away <= (text.local[n + 1] - p).norm());
+             (n + 1 == text.local.size() || away <= (text.local[n + 1] - p).norm());
     };
     const auto trigger = [&](double metres) {
       items.push_back(
@@ -213,6 +222,7 @@ Plan plan_of(const MissionText& text, const CameraLines& camera) {
     if (!is_on && line < camera.lines.size() && is_at(camera.lines[line].front())) {
       trigger(camera.trigger_m);
     }
+    n = std::min(n + 1, text.local.size() - 1);  // a landing is below the last one
   }
   if (line < camera.lines.size()) {
     throw Error("line " + std::to_string(line) + " of the photos is not among the items");

@@ -21,7 +21,7 @@ struct Command {
   static constexpr int kVtolTakeoff = 84;
   static constexpr int kVtolLand = 85;
   static constexpr int kDelay = 93;           ///< parameter 1: seconds
-  static constexpr int kChangeSpeed = 178;    ///< parameters 1: 1, over the ground; 2: m/s
+  static constexpr int kChangeSpeed = 178;    ///< parameters 1: over the ground or not; 2: m/s
   static constexpr int kCameraTrigger = 206;  ///< parameters 1: metres, 0: off; 3: a photo at once
   static constexpr int kLandingStart = 189;
   static constexpr int kGripper = 211;          ///< parameters 1: number of it; 2: 0, to release
@@ -67,7 +67,6 @@ Plan plan_of(const formats::MissionFile& mission);
 struct CameraLines {
   std::vector<Polyline> lines;
   double trigger_m = 0;   ///< between photos
-  double speed_mps = 0;   ///< commanded before the first item after take-off; 0: none is
   double within_m = 0.1;  ///< of a line's ends, the items there; turns are written beside theirs
 };
 /// The items, with the camera on at the one nearest to each line's first point and off, with a last

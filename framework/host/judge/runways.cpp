@@ -2,6 +2,7 @@
 #include "host/judge/runways.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/base/words.hpp"
 #include "host/judge/slanted_end.hpp"
@@ -52,7 +53,14 @@ Request above_no_ground(Request request) {
 }
 
 SlantedLegs slanted_legs(const Route& route, const Runways& runways) {
-  return {runways.climbs_to ? std::size_t(1) : 0, route.size() - (runways.glides_from ? 2 : 1)};
+  const auto is_slope = [](const std::optional<Vec3>& end, double z) {
+    return end && std::abs(end->z() - z) > kLengthTolerance;
+  };
+  if (route.size() < 2) {
+    return {};
+  }
+  return {is_slope(runways.climbs_to, route.front().z()) ? std::size_t(1) : 0,
+          route.size() - (is_slope(runways.glides_from, route.back().z()) ? 2 : 1)};
 }
 
 std::vector<Violation> ground_violations(const Route& route, const Request& request,
@@ -61,7 +69,7 @@ std::vector<Violation> ground_violations(const Route& route, const Request& requ
   const auto is_at = [&](std::size_t n, const std::optional<Vec3>& place) {
     return !place || (n < route.size() && (route[n] - *place).norm() <= kSamePlace);
   };
-  if (first >= last || !is_at(first, runways.climbs_to) || !is_at(last, runways.glides_from)) {
+  if (first >= last || !is_at(1, runways.climbs_to) || !is_at(last, runways.glides_from)) {
     return {{"runway", 0, 0, 0, "the route does not take off and land along its runways"}};
   }
   Request ground = request;
@@ -73,10 +81,10 @@ std::vector<Violation> ground_violations(const Route& route, const Request& requ
   for (Violation& violation : found) {
     violation.at += first;
   }
-  if (runways.climbs_to) {
+  if (first > 0) {
     judge_slope(route.leg(0), route[0].z(), 0, ground, found);
   }
-  if (runways.glides_from) {
+  if (last + 1 < route.size()) {
     judge_slope(route.leg(last), route[last + 1].z(), last, ground, found);
   }
   return found;

@@ -10,7 +10,7 @@ namespace altiplan::host {
 
 /// Where a route leaves the ground, and returns to it, on a slope: from the start straight to a
 /// point, and from a point straight to the goal. There it keeps off the ground as a SlantedEnd
-/// does.
+/// does. A VTOL's are level: it begins and ends in hover.
 struct Runways {
   std::optional<Vec3> climbs_to{};
   std::optional<Vec3> glides_from{};

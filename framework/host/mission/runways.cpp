@@ -33,7 +33,8 @@ LandingLine line_of(const LandingEntry& landing, const Vec3& touch) {
 
 Vec3 end_of(const TakeOffEntry& takeoff, const Vec3& start) {
   const double climb_m = takeoff.height_m / std::tan(radians(takeoff.climb_deg));
-  return start + climb_m * course_of(takeoff.course_deg) + Vec3(0, 0, takeoff.height_m);
+  return start + (climb_m + takeoff.level_m) * course_of(takeoff.course_deg) +
+         Vec3(0, 0, takeoff.height_m);
 }
 
 void add_runways(const ScenarioFile& file, Mission& mission) {
@@ -60,7 +61,8 @@ std::optional<Polyline> runway_section(const Mission& mission, const Vec3& from,
     return Polyline{from, to};
   }
   if (runways.glides_from && to == mission.request.goal.position) {
-    return Polyline{from, *runways.glides_from, to};
+    return *runways.glides_from == to ? Polyline{from, to}
+                                      : Polyline{from, *runways.glides_from, to};
   }
   return std::nullopt;
 }
