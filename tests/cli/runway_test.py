@@ -146,7 +146,7 @@ class Runway(unittest.TestCase):
         self.assertNotIn("--speed: ", out)
         out = self.go("fast", "--land", vehicle=("--wing", "80", "--speed", "25"))
         self.assertIn("--speed: ArduPilot plane flies from 9 to 22 m/s", out)
-        self.assertIn("is ignored: the airspeed is from 9 to 22 m/s", self.check("fast"))
+        self.assertIn("is ignored: it is not from AIRSPEED_MIN to AIRSPEED_MAX, 9 to 22 m/s", self.check("fast"))
 
     def test_the_circle_at_its_end(self):
         """A hill rises under the circle, but not under the way to its centre."""

@@ -147,27 +147,18 @@ TEST(FlownMission, AQuadplaneSpeedsUpWhereItPoints) {
   EXPECT_FALSE(is_judged(70, kQuadplane));
 }
 
-TEST(FlownMission, AQuadplaneSwingsInWind) {
-  const auto reach = [](double wind_mps) {
+// In ArduPilot's simulation it swings up to 30 m away while it lands in 4.3 m/s.
+TEST(FlownMission, AQuadplaneInWindIsNotJudged) {
+  const auto is_judged = [](double wind_mps) {
     FlightOptions options;
     options.runway_deg = 90;
     options.wind_mps = wind_mps;
-    const FlownMission flown =
-        fly({command(84, 0, 0, 60), command(16, 900, 0, 60), command(85, 1800, 0, 0)}, kQuadplane,
-            options);
-    return part(flown, "the landing").strips.front().reach_m;
+    return !has_rule(fly({command(84, 0, 0, 60), command(16, 900, 0, 60), command(85, 1800, 0, 0)},
+                         kQuadplane, options),
+                     "not_judged");
   };
-  EXPECT_NEAR(reach(0), 2, 0.01);
-  EXPECT_NEAR(reach(4), 10, 0.01);
-}
-
-TEST(FlownMission, ASpeedBeyondItsLimitsIsIgnored) {
-  const auto flown = [](double mps) {
-    return fly({command(16, 0, 0, 100), order(178, {0, mps, -1, 0}), command(16, 900, 0, 100)},
-               kPlane);
-  };
-  EXPECT_TRUE(has_rule(flown(25), "speed"));
-  EXPECT_FALSE(has_rule(flown(20), "speed"));
+  EXPECT_TRUE(is_judged(0));
+  EXPECT_FALSE(is_judged(2));
 }
 
 TEST(FlownMission, Px4TakesAPlanesMissionWithoutALandingIfItIsTold) {

@@ -141,7 +141,6 @@ class Hover {
   double climb_acceleration() const;  ///< m/s², above the ground, of ArduPilot's
   /// Adds what lies within a distance of a leg, level with it.
   void add_beside(const Destination& to, double distance);
-  double column_reach() const;
   double reach() const { return reach(acceptance_m); }  ///< of the present place
   double reach(double acceptance) const;                ///< radius within which a place is reached
 

@@ -87,20 +87,13 @@ double Hover::reach(double acceptance) const {
   return acceptance > 0 ? acceptance : flight_.parameter("NAV_ACC_RAD");
 }
 
-// ArduPilot's VTOL swings about its place in wind.
-double Hover::column_reach() const {
-  constexpr double kSwingsInWind = 2;  // metres, of each metre a second
-  const formats::Autopilot autopilot = flight_.autopilot();
-  return std::min(reach(), 2.0) +
-         (autopilot.is_px4() || autopilot.is_copter() ? 0 : kSwingsInWind * flight_.wind_mps);
-}
-
 void Hover::climb(std::size_t command, const char* what, double low_m, double high_m) {
   flight_.begin(command, what).ground =
       is_on_ground ? FlownPart::Ground::touched_from_above : FlownPart::Ground::kept_off;
   for (const Eigen::Vector2d& place : leave_circle()) {
     const auto [bottom, top] = heights_at(place);
-    flight_.add_column(place, std::min(bottom, low_m), std::max(top, high_m), column_reach());
+    flight_.add_column(place, std::min(bottom, low_m), std::max(top, high_m),
+                       std::min(reach(), 2.0));
   }
   if (left_) {
     left_->centre.above_ground.reset();
@@ -474,7 +467,7 @@ void Hover::land(std::size_t command, const char* what) {
   const double foot = std::min(low, flight_.ground(at));
   for (const Eigen::Vector2d& place : leave_circle()) {
     flight_.add_column(place, std::min(foot, flight_.ground(place)), heights_at(place)[1],
-                       column_reach());
+                       std::min(reach(), 2.0));
   }
   left_.reset();
   const double height = high - foot;

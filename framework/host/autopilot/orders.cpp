@@ -164,11 +164,6 @@ void Walker::change_speed(std::size_t n) {
     }
     speeds[0] = speeds[1] = value == -2 ? cruise : value;
     take_speed(counts, speeds, airspeed_, cruise);
-    if (!counts && p[0] == 0 && value > 0) {
-      flight_.remark(Weight::note, "speed", n,
-                     "is ignored: the airspeed is from " + with_digits(min_airspeed(), 3) + " to " +
-                         with_digits(max_airspeed(), 3) + " m/s (AIRSPEED_MIN, AIRSPEED_MAX)");
-    }
   }
   speeds[1] = std::max(speeds[1], min_ground_mps_);
   take_speed(counts, speeds, wing_speed_, cruise);

@@ -116,13 +116,13 @@ const Row kRows[] = {
 
 /// Those that may be 0 or less; flight with such a value of the others is none.
 constexpr std::string_view kMayBeZero[] = {
-    "RTL_ALT_M",       "RTL_CLIMB_MIN_M", "RTL_CONE_SLOPE",   "RTL_ALT_TYPE",    "RALLY_LIMIT_KM",
-    "RALLY_INCL_HOME", "FENCE_ENABLE",    "FENCE_AUTOENABLE", "FENCE_TYPE",      "FENCE_ALT_MAX",
-    "FENCE_ALT_MIN",   "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",
-    "ALT_SLOPE_MIN",   "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
-    "TERRAIN_OFS_MAX", "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
-    "RTL_DESCEND_ALT", "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
-    "MIS_OPTIONS",     "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",
+    "RTL_ALT_M",        "RTL_CLIMB_MIN_M", "RTL_CONE_SLOPE",   "RTL_ALT_TYPE",    "RALLY_LIMIT_KM",
+    "RALLY_INCL_HOME",  "FENCE_ENABLE",    "FENCE_AUTOENABLE", "FENCE_TYPE",      "FENCE_ALT_MAX",
+    "FENCE_ALT_MIN",    "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",
+    "ALT_SLOPE_MIN",    "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
+    "TERRAIN_OFS_MAX",  "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
+    "RTL_DESCEND_ALT",  "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
+    "MIS_OPTIONS",      "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",
     "LAND_SPD_HIGH_MS", "MIS_TKO_LAND_REQ"};
 
 void expect_possible(const Row& row, const ParameterValue& given) {

@@ -158,9 +158,7 @@ bool Walker::take_off_along_runway(std::size_t n) {
 
 bool Walker::begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& toward) {
   constexpr double kLongest = 15;  // seconds: VT_TRANS_TIMEOUT
-  constexpr double kBeside = 8;    // metres
-  // ArduPilot's is carried aside while it is slow.
-  const double reach = kBeside + (is_px4() ? 0 : 2 * flight_.wind_mps);
+  constexpr double kReach = 8;     // metres
   if (!toward || (*toward - hover_->at).norm() < 1) {
     return !give_up(n,
                     "where it speeds up after its climb depends on where it points: a waypoint "
@@ -186,7 +184,7 @@ bool Walker::begin_to_wing(std::size_t n, const std::optional<Eigen::Vector2d>& 
       begin + kLongest * wing_->speed_mps[1] * (*toward - begin).normalized();
   flight_.begin(n, "the transition to flight on wings");
   flight_.add_strip({begin.x(), begin.y(), hover_->low}, hover_->high,
-                    {end.x(), end.y(), hover_->low}, hover_->high, reach);
+                    {end.x(), end.y(), hover_->low}, hover_->high, kReach);
   flight_.take({0, kLongest});
   wing_->start_on(begin, end, hover_->low);
   return true;

@@ -108,6 +108,12 @@ void Walker::remark_parameters() {
     if (task == Task::return_home) {
       remark_return_parameters(n);
     }
+    const bool hovers = task == Task::take_off || task == Task::vtol_take_off ||
+                        task == Task::vtol_land || task == Task::land || task == Task::transition;
+    if (hovers && is_quadplane(autopilot_) && options_.wind_mps > 0) {
+      flight_.remark(Weight::not_judged, "not_judged", n,
+                     "how far wind carries a QuadPlane that hovers is not judged (--wind)");
+    }
     if (formats::is_above_ground(commands_[n].frame) && formats::flies_to_position(task) &&
         is_of_ardupilot(autopilot_) && options_.parameters.contains("TERRAIN_ENABLE") &&
         options_.parameters.at("TERRAIN_ENABLE").value == 0) {
