@@ -1,11 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/gate/violated_zone.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "altiplan/ground.hpp"
+#include "host/base/words.hpp"
 
 namespace altiplan::host {
+
+namespace {
+/// True if a zone of that name keeps the vehicle in, and no other has its name.
+bool is_fence(const Drawing& drawing, const std::string& name) {
+  return std::all_of(drawing.shapes.begin(), drawing.shapes.end(), [&](const Drawn& drawn) {
+    return drawn.name != name || drawn.role == Drawn::Role::keep_in;
+  });
+}
+
+/// What is outside a fence lies in no zone: "lies up to 352.00 m outside the fence 'field', where
+/// …"
+void say_fence(Violation& violation, const std::string& name) {
+  const std::size_t rest = violation.message.find(", where ");
+  const std::string metres = with_decimals(std::abs(violation.value), 2) + " m";
+  const std::string where =
+      violation.value >= 0             ? "comes to " + metres + " of the border of the fence"
+      : std::isfinite(violation.value) ? "lies up to " + metres + " outside the fence"
+                                       : "lies outside the fence";
+  violation.message =
+      where + " '" + name + "'" + (rest == std::string::npos ? "" : violation.message.substr(rest));
+}
+}  // namespace
 
 void ZoneNames::add_to(Finding& finding) {
   const Layer* layer = world_.find(finding.violation.layer);
@@ -15,7 +39,10 @@ void ZoneNames::add_to(Finding& finding) {
       drawing = drawings_.emplace(layer->id, layer->environment->drawing()).first;
     }
     finding.zone = drawing->second ? name_at(*drawing->second, *finding.at) : "";
-    if (!finding.zone.empty()) {
+    if (!finding.zone.empty() && finding.violation.constraint == "clearance" &&
+        is_fence(*drawing->second, finding.zone)) {
+      say_fence(finding.violation, finding.zone);
+    } else if (!finding.zone.empty()) {
       finding.violation.message += ": '" + finding.zone + "' of '" + layer->id + "'";
     }
   }
