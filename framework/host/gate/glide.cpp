@@ -185,7 +185,7 @@ class GlideJudge {
   }
 
   void refuse(const FlownPlaces& places, const Whereabouts& place) {
-    refused_.push_back({places.times_of(place, kGlideFinest), places.part().command, place,
+    refused_.push_back({places.times_of(place, 2 * place.radius_m), places.part().command, place,
                         candidates(place, glide_in(place)).front()});
   }
 

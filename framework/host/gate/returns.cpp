@@ -103,7 +103,7 @@ class ReturnJudge {
 
   void refuse(const Whereabouts& place) {
     const std::size_t command = places_->part().command;
-    const auto [from_s, to_s] = places_->times_of(place, finest_);
+    const auto [from_s, to_s] = places_->times_of(place, 2 * place.radius_m);
     refused_.push_back(
         {from_s, to_s, command, place, needed_wh(place, returns_.from(command, place))});
   }
@@ -158,6 +158,32 @@ class ReturnJudge {
       }
     }
     return gap;
+  }
+
+  /// Sets the part of a return that is lowest, and within a metre where it is.
+  void set_lowest(const FlownMission& home, Finding& finding) const {
+    double gap = kInfinity;
+    const Strip* lowest = nullptr;
+    for (const FlownPart& part : home.parts) {
+      for (const Strip& strip : part.strips) {
+        if (part.ground == FlownPart::Ground::kept_off &&
+            world_.ground_gap(strip.from, strip.to, gap) < gap) {
+          gap = world_.ground_gap(strip.from, strip.to);
+          lowest = &strip;
+          finding.what = part.what;
+        }
+      }
+    }
+    if (lowest == nullptr) {
+      return;
+    }
+    Vec3 from = lowest->from;
+    Vec3 to = lowest->to;
+    while ((to - from).norm() > 1) {
+      const Vec3 middle = (from + to) / 2;
+      (world_.ground_gap(from, middle) <= world_.ground_gap(middle, to) ? to : from) = middle;
+    }
+    finding.at = (from + to) / 2;
   }
 
   /// That which flies deepest into the ground, of some all over the stretch and of those next to
@@ -242,13 +268,18 @@ class ReturnJudge {
       finding.violation.value = refused.needed_wh;
       finding.violation.limit = battery_->usable_wh();
       finding.violation.unit = "Wh";
-      finding.violation.message = "needs " + with_decimals(refused.needed_wh, 1) +
-                                  " Wh from take-off to its end, where " +
+      const std::string needed = std::isfinite(refused.needed_wh)
+                                     ? with_decimals(refused.needed_wh, 1) + " Wh"
+                                     : "more than any battery holds";
+      finding.violation.message = "needs " + needed + " from take-off to its end, where " +
                                   with_decimals(battery_->usable_wh(), 1) + " Wh may be used";
     }
     names_.add_worst(home.parts, judge_, finding);
     if (gap < 0 && std::isfinite(gap) && !finding.is_over_void) {
+      set_lowest(home, finding);
       finding.violation.constraint = "ground";
+      finding.violation.layer.clear();
+      finding.zone.clear();
       finding.violation.value = gap;
       finding.violation.limit = 0;
       finding.violation.message =
