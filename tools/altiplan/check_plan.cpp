@@ -44,10 +44,6 @@ std::string items_of(const Finding& finding) {
   return text;
 }
 
-std::string cure_of(const Finding& finding, const PlanReport& report) {
-  return finding.cure ? in_words(*finding.cure, report.name_of(finding.cure->command)) : "";
-}
-
 /// "not judged: airspace, heights above ground", for what the options leave out; "" for nothing.
 std::string left_out(const PlanCheck& plan) {
   if (plan.scenario) {
@@ -98,12 +94,14 @@ void print(const PlanReport& report, const host::Mission& world) {
   if (report.energy) {
     std::printf("  energy: %s\n", report.energy->in_words().c_str());
   }
-  for (const Finding& finding : report.findings) {
+  std::string cure;  // what cures the next as well is printed once
+  for (const Finding& finding : joined_findings(report.findings)) {
     std::printf("  %s: %s\n", items_of(finding).c_str(), finding.violation.message.c_str());
     print_worst(finding, world);
-    if (finding.cure) {
-      std::printf("    cure: %s\n", cure_of(finding, report).c_str());
+    if (!finding.cure.empty() && finding.cure != cure) {
+      std::printf("    cure: %s\n", finding.cure.c_str());
     }
+    cure = finding.cure;
   }
   if (report.returns) {
     std::printf("returns %s: %s\n", colored(report.returns->verdict).c_str(),
@@ -236,8 +234,8 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
       one["lonlat"] = {lon, lat};
       one["altitude_m"] = finding.at->z();
     }
-    if (finding.cure) {
-      one["cure"] = cure_of(finding, report);
+    if (!finding.cure.empty()) {
+      one["cure"] = finding.cure;
     }
     all.push_back(std::move(one));
   }
@@ -319,16 +317,20 @@ host::Basis basis_of(const PlanCheck& plan, const formats::MissionFile& mission,
   return basis;
 }
 
-/// The changes of items from one mission to another, which differ in heights and places alone.
-std::vector<host::ChangedItem> changes_of(const formats::MissionFile& before,
-                                          const formats::MissionFile& after, const World& world,
-                                          const PlanReport& report, std::string& words) {
-  std::vector<host::ChangedItem> changes;
+/// The changes from one mission to another: of heights and places, frames of heights, home's height
+/// and rally points'.
+host::PlanChanges changes_of(const formats::MissionFile& before, const formats::MissionFile& after,
+                             const World& world, const PlanReport& report, std::string& words) {
+  host::PlanChanges changes;
+  if (before.home && before.home->altitude_m != after.home->altitude_m) {
+    changes.home_raised_by_m = after.home->altitude_m - before.home->altitude_m;
+    words += "  set home's altitude to " + host::rounded_text(after.home->altitude_m, 1) + " m\n";
+  }
   for (std::size_t n = 0; n < before.commands.size(); ++n) {
     const formats::MissionCommand& old = before.commands[n];
     const formats::MissionCommand& now = after.commands[n];
     host::ChangedItem change{
-        old.place, {}, std::round((now.altitude_m - old.altitude_m) * 10) / 10};
+        old.place, {}, std::round((now.altitude_m - old.altitude_m) * 10) / 10, {}};
     Vec3 aside(0, 0, 0);
     if (old.lon != now.lon || old.lat != now.lat) {
       change.lonlat = {now.lon, now.lat};
@@ -336,15 +338,31 @@ std::vector<host::ChangedItem> changes_of(const formats::MissionFile& before,
       const auto [to_x, to_y] = world.frame().to_local(now.lon, now.lat);
       aside = {to_x - x, to_y - y, 0};
     }
-    if (!change.lonlat && change.raised_by_m == 0) {
+    if (old.frame != now.frame) {
+      change.frame = now.frame;
+      words += "  set the frame of " + report.name_of(n) + " to " + std::to_string(now.frame) +
+               " (relative)\n";
+    }
+    if (!change.lonlat && change.raised_by_m == 0 && !change.frame) {
       continue;
     }
     for (const Vec3& part : {Vec3(0, 0, change.raised_by_m), aside}) {
       if (part.norm() > 0) {
-        words += "  " + in_words(host::Cure{n, part}, report.name_of(n)) + "\n";
+        words +=
+            "  " +
+            in_words(host::Cure{n, part}, report.name_of(n), host::above_ground(after, n, world)) +
+            "\n";
       }
     }
-    changes.push_back(std::move(change));
+    changes.items.push_back(std::move(change));
+  }
+  for (std::size_t n = 0; n < before.rally.size(); ++n) {
+    const double rise = after.rally[n].altitude_m - before.rally[n].altitude_m;
+    if (rise != 0) {
+      changes.rally.emplace_back(n, rise);
+      words += std::string("  ") + (rise > 0 ? "raise" : "lower") + " rally point " +
+               std::to_string(n + 1) + " by " + fixed(std::abs(rise), 1) + " m\n";
+    }
   }
   return changes;
 }

@@ -103,13 +103,16 @@ std::string MissionEditor::moved(const std::string& place, const Vec3& by,
   if (item == before.items.end()) {
     throw Error("there is no item '" + place + "' to move");
   }
-  host::ChangedItem change{place, {}, by.z()};
+  host::PlanChanges changes;
+  host::ChangedItem& change = changes.items.emplace_back();
+  change.place = place;
+  change.raised_by_m = by.z();
   if (by.x() != 0 || by.y() != 0) {
     const auto [lon, lat] =
         opened_.world.truth.frame().to_lonlat(item->at.x() + by.x(), item->at.y() + by.y());
     change.lonlat = {lon, lat};
   }
-  return host::changed_plan(before.text, judged_.mission.format, {change});
+  return host::changed_plan(before.text, judged_.mission.format, changes);
 }
 
 Json MissionEditor::change(const Json& wish) {

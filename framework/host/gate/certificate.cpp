@@ -52,12 +52,11 @@ std::string violations(const PlanReport& report, const Request& request) {
   }
   std::string html = "<h2>" + counted(report.findings.size(), "violation") + "</h2>\n<table>\n" +
                      row({"where", "worst at", "what", "cure"}, "th");
-  for (const Finding& finding : report.findings) {
-    html += row(
-        {xml_text(joined(finding.items)), finding.at ? place_in_words(*finding.at, request) : "",
-         xml_text(finding.violation.message),
-         finding.cure ? xml_text(in_words(*finding.cure, report.name_of(finding.cure->command)))
-                      : "none of a single item"});
+  for (const Finding& finding : joined_findings(report.findings)) {
+    html += row({xml_text(joined(finding.items)),
+                 finding.at ? place_in_words(*finding.at, request) : "",
+                 xml_text(finding.violation.message),
+                 finding.cure.empty() ? "none of a single item" : xml_text(finding.cure)});
   }
   return html + "</table>\n";
 }
@@ -224,9 +223,7 @@ std::string junit(const PlanReport& report) {
       }
       is_told[n] = true;
       std::string words = finding.violation.message;
-      if (finding.cure) {
-        words += "; cure: " + in_words(*finding.cure, report.name_of(finding.cure->command));
-      }
+      words += finding.cure.empty() ? "" : "; cure: " + finding.cure;
       failures += "      <failure type=\"" + xml_text(finding.violation.constraint) +
                   "\" message=\"" + xml_text(words) + "\">" + xml_text(figures_of(finding)) +
                   "</failure>\n";

@@ -83,45 +83,55 @@ class JsonText {
   const std::string& text_;
 };
 
-/// The text of an item with its numbers changed.
-std::string changed_item(std::string text, const ChangedItem& change) {
+/// A ground station's word for heights above home.
+constexpr const char* kRelativeMode = "1";
+
+std::string changed_json(const std::string& text, const PlanChanges& changes) {
   const JsonText json(text);
-  const JsonText::Part item = json.at(change.place);
   std::vector<std::pair<JsonText::Part, std::string>> parts;
-  const auto raise = [&](const std::optional<JsonText::Part>& part) {
+  const auto raise = [&](const std::optional<JsonText::Part>& part, double by_m) {
     const std::string_view old = part ? json[*part] : "null";
     double metres = 0;
     const auto read = std::from_chars(old.data(), old.data() + old.size(), metres);
-    if (change.raised_by_m != 0 && read.ec == std::errc()) {
-      parts.emplace_back(*part, rounded_text(metres + change.raised_by_m, kMetres));
+    if (by_m != 0 && read.ec == std::errc()) {
+      parts.emplace_back(*part, rounded_text(metres + by_m, kMetres));
     }
   };
-  const bool old_form = json.in(item, "coordinate").has_value();
-  const std::string list = change.place + (old_form ? ".coordinate." : ".params.");
-  const int first = old_form ? 0 : 4;
-  if (change.lonlat) {
-    for (const int axis : {0, 1}) {
-      parts.emplace_back(json.at(list + std::to_string(first + axis)),
-                         rounded_text(change.lonlat->at(std::size_t(1 - axis)), kDegrees));
-    }
+  if (changes.home_raised_by_m != 0) {
+    raise(json.at("mission.plannedHomePosition.2"), changes.home_raised_by_m);
   }
-  raise(json.at(list + std::to_string(first + 2)));
-  for (const char* key : {"Altitude", "AMSLAltAboveTerrain"}) {  // the ground station's own
-    raise(json.in(item, key));
+  for (const auto& [n, rise] : changes.rally) {
+    raise(json.at("rallyPoints.points." + std::to_string(n) + ".2"), rise);
+  }
+  for (const ChangedItem& change : changes.items) {
+    const JsonText::Part item = json.at(change.place);
+    const bool old_form = json.in(item, "coordinate").has_value();
+    const std::string list = change.place + (old_form ? ".coordinate." : ".params.");
+    const int first = old_form ? 0 : 4;
+    if (change.frame) {
+      parts.emplace_back(json.at(change.place + ".frame"), std::to_string(*change.frame));
+      if (const auto mode = json.in(item, "AltitudeMode")) {
+        parts.emplace_back(*mode, kRelativeMode);
+      }
+    }
+    if (change.lonlat) {
+      for (const int axis : {0, 1}) {
+        parts.emplace_back(json.at(list + std::to_string(first + axis)),
+                           rounded_text(change.lonlat->at(std::size_t(1 - axis)), kDegrees));
+      }
+    }
+    raise(json.at(list + std::to_string(first + 2)), change.raised_by_m);
+    for (const char* key : {"Altitude", "AMSLAltAboveTerrain"}) {  // the ground station's own
+      raise(json.in(item, key), change.raised_by_m);
+    }
   }
   std::sort(parts.begin(), parts.end(),
             [](const auto& a, const auto& b) { return a.first.begin > b.first.begin; });
+  std::string changed = text;
   for (const auto& [part, number] : parts) {
-    text.replace(part.begin, part.end - part.begin, number);
+    changed.replace(part.begin, part.end - part.begin, number);
   }
-  return text;
-}
-
-std::string changed_json(std::string text, const std::vector<ChangedItem>& changes) {
-  for (const ChangedItem& change : changes) {
-    text = changed_item(std::move(text), change);
-  }
-  return text;
+  return changed;
 }
 
 std::string number(double value, int digits) {
@@ -130,7 +140,7 @@ std::string number(double value, int digits) {
   return text;
 }
 
-/// Columns 9 to 11 of a line, latitude, longitude and altitude, replaced.
+/// Columns of a line replaced: 3, the frame, and 9 to 11, latitude, longitude and altitude.
 std::string changed_line(const std::string& line, const ChangedItem& change) {
   std::string result;
   std::size_t at = 0;
@@ -143,21 +153,28 @@ std::string changed_line(const std::string& line, const ChangedItem& change) {
     result += line.substr(at, begin - at);
     const bool is_moved = change.lonlat && (column == 8 || column == 9);
     const bool is_raised = column == 10 && change.raised_by_m != 0;
-    result += is_moved    ? number(change.lonlat->at(column == 8 ? 1 : 0), 7)
-              : is_raised ? number(altitude + change.raised_by_m, 3)
-                          : word;
+    result += is_moved                      ? number(change.lonlat->at(column == 8 ? 1 : 0), 7)
+              : is_raised                   ? number(altitude + change.raised_by_m, 3)
+              : column == 2 && change.frame ? std::to_string(*change.frame)
+                                            : word;
     at = end;
   }
   return result;
 }
 
-std::string changed_lines(const std::string& text, const std::vector<ChangedItem>& changes) {
+std::string changed_lines(const std::string& text, const PlanChanges& changes) {
   std::string result;
   std::size_t at = 0;
+  int filled = 0;  // of the lines: the second is home's
   for (int n = 1; at < text.size(); ++n) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string line = text.substr(at, end - at);
-    for (const ChangedItem& change : changes) {
+    filled += line.find_first_not_of(" \t\r") == std::string::npos ? 0 : 1;
+    if (filled == 2 && changes.home_raised_by_m != 0) {
+      line = changed_line(line, {"", {}, changes.home_raised_by_m, {}});
+      filled = 3;
+    }
+    for (const ChangedItem& change : changes.items) {
       if (change.place == "line " + std::to_string(n)) {
         line = changed_line(line, change);
       }
@@ -170,7 +187,7 @@ std::string changed_lines(const std::string& text, const std::vector<ChangedItem
 }  // namespace
 
 std::string changed_plan(const std::string& text, formats::MissionFile::Format format,
-                         const std::vector<ChangedItem>& changes) {
+                         const PlanChanges& changes) {
   switch (format) {
     case formats::MissionFile::Format::qgc_plan:
       return changed_json(text, changes);

@@ -4,23 +4,31 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "altiplan/formats/mission_file.hpp"
 
 namespace altiplan::host {
 
-/// An item's new position; its frame of altitude stays.
+/// An item's new position.
 struct ChangedItem {
   std::string place;                            ///< as MissionItem has it
   std::optional<std::array<double, 2>> lonlat;  ///< none: only its height changes
   double raised_by_m = 0;
+  std::optional<int> frame;  ///< MAV_FRAME of heights above home; none: its own
 };
 
-/// The text of a `.plan` or `.waypoints` file with items changed and all else as it is. Throws
-/// Error for other formats.
+struct PlanChanges {
+  std::vector<ChangedItem> items;
+  double home_raised_by_m = 0;
+  std::vector<std::pair<std::size_t, double>> rally;  ///< and by how much it is raised, metres
+};
+
+/// The text of a `.plan` or `.waypoints` file so changed and all else as it is; rally points of a
+/// `.plan` alone. Throws Error for other formats.
 std::string changed_plan(const std::string& text, formats::MissionFile::Format format,
-                         const std::vector<ChangedItem>& changes);
+                         const PlanChanges& changes);
 
 /// The text of a `.plan` file with these rally points, above home, in place of its own and all else
 /// as it is.

@@ -18,8 +18,26 @@ struct Cure {
   Vec3 by{0, 0, 0};  ///< metres; its length is a multiple of 0.1 m
 };
 
-/// "raise mission.items.7 by 12.4 m", "move line 5 by 30.1 m to the north-east"
-std::string in_words(const Cure& cure, const std::string& item);
+/// "raise mission.items.7 by 12.4 m", "move line 5 by 30.1 m to the north-east"; of a rise that is
+/// far also how high above the ground the item then is, if that is known.
+std::string in_words(const Cure& cure, const std::string& item,
+                     const std::optional<double>& above_ground_m);
+
+/// Items whose heights above sea level are meant above home.
+struct AboveHome {
+  std::vector<std::size_t> commands;
+  std::size_t invalid = 0;  ///< parts of the flight that are not valid then
+  std::size_t before = 0;   ///< and as it is
+  bool passes = false;      ///< then all are valid, and no autopilot objects
+};
+
+/// The mission with heights above home in the place of heights above sea level.
+formats::MissionFile with_heights_above_home(formats::MissionFile plan,
+                                             const std::vector<std::size_t>& commands);
+
+/// A command's height above the ground; none where the ground, or its place, is not known.
+std::optional<double> above_ground(const formats::MissionFile& plan, std::size_t command,
+                                   const World& world);
 
 /// How a mission is flown, by each who may fly it.
 using Objections = std::set<std::pair<std::string, std::size_t>>;
@@ -41,14 +59,26 @@ class Cures {
   std::optional<Cure> find(std::size_t before, std::size_t command, double off_m);
   bool is_exhausted() const { return work_ > max_work_; }
 
-  /// The mission changed until it is valid, by cures of single commands and by raising or lowering
-  /// both ends of a way; none where that fails.
+  /// Where heights above sea level lie far below the ground: these, or else all, taken above home,
+  /// if fewer parts of the flight are not valid then.
+  std::optional<AboveHome> above_home();
+
+  /// The mission changed until it is valid, with the smallest greatest rise that is found; none
+  /// where that fails.
   std::optional<formats::MissionFile> cured();
 
  private:
   // Strips judged, about 10 µs each: a check's answer does not wait for cures, --fix does.
   static constexpr double kMaxWorkOfOne = 6e3;
   static constexpr double kMaxWorkOfAll = 2e5;
+
+  /// By cures of single commands, and by raising or lowering both ends of a way.
+  std::optional<formats::MissionFile> cured_one_by_one();
+  /// Raises and lowers all ways at once, by what each is off (projections onto convex sets, after
+  /// Kaczmarz), until none is.
+  void level();
+  /// Parts of the flight that are not valid; more than any where an autopilot objects anew.
+  std::size_t invalid_parts(const formats::MissionFile& plan);
 
   formats::MissionFile changed(const std::vector<Cure>& changes) const;
   /// True if, so changed, the way is valid, and with `all` what is flown to and from each change.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <tuple>
 
 #include "altiplan/error.hpp"
@@ -11,6 +10,7 @@
 #include "altiplan/kit/layers/hours.hpp"
 #include "host/base/words.hpp"
 #include "host/gate/places.hpp"
+#include "host/gate/plan_cures.hpp"
 #include "host/gate/task_verdict.hpp"
 #include "host/gate/violated_zone.hpp"
 #include "host/judge/judge.hpp"
@@ -93,6 +93,12 @@ std::vector<std::string> items_of(const FlownPart& part, const PlanReport& repor
   return {report.name_of(part.command)};
 }
 
+Request judged_in(const Mission& world) {
+  Request request = world.request;
+  request.world = std::make_shared<const World>(world.truth);
+  return request;
+}
+
 /// What may fly a mission, and what judges it.
 class Gate {
  public:
@@ -102,7 +108,7 @@ class Gate {
         world_(world.truth),
         request_(world.request),
         options_(options),
-        judge_(judged_request(world)),
+        judge_(judged_in(world)),
         names_(world_),
         is_drawn_(plan.commands.empty() && !options.firmware && !options.airframe) {
     request_.world = std::make_shared<const World>(world.truth);
@@ -128,22 +134,18 @@ class Gate {
     report.line = flown_line(all.front());
     report.time = time_of(all);
     add_times(report, all);
-    add_cures(report, all);
+    if (!height_of_home(plan_, world_)) {  // else all else comes of that
+      cures().add_to(report, ways_, all);
+    }
     note_autopilots(report);
     note_fence(report);
   }
 
   std::vector<FlownMission> flights() const { return flights(plan_); }
 
-  std::optional<formats::MissionFile> cured() { return cures(flights()).cured(); }
+  std::optional<formats::MissionFile> cured() { return cures().cured(); }
 
  private:
-  static Request judged_request(const Mission& world) {
-    Request request = world.request;
-    request.world = std::make_shared<const World>(world.truth);
-    return request;
-  }
-
   std::vector<FlownMission> flights(const formats::MissionFile& plan) const {
     if (is_drawn_) {
       return {as_drawn(plan, world_, options_.drawn_mps.value_or(kDrawnSpeed))};
@@ -155,9 +157,10 @@ class Gate {
     return all;
   }
 
-  Cures cures(const std::vector<FlownMission>& flown) const {
-    return {plan_, flown, world_,
-            [this](const formats::MissionFile& plan) { return flights(plan); }, judge_};
+  PlanCures cures() const {
+    return {plan_,           world_,
+            options_.flight, autopilots_,
+            judge_,          [this](const formats::MissionFile& plan) { return flights(plan); }};
   }
 
   /// "ArduPilot plane: " where several may fly it.
@@ -176,7 +179,7 @@ class Gate {
     if (options_.world_during && depends) {
       const Mission world =
           options_.world_during(part.begin_s, std::max(part.time.max_s, part.until_s));
-      found = BandJudge(judged_request(world)).violations(part);
+      found = BandJudge(judged_in(world)).violations(part);
     }
     return found;
   }
@@ -268,7 +271,7 @@ class Gate {
     }
     report.findings.push_back(std::move(finding));
     ways_.resize(report.findings.size());
-    ways_.back() = {part.before, part.command};
+    ways_.back() = PlanCures::Way{part.before, part.command, part.is_return};
   }
 
   void add_remarks(PlanReport& report, const FlownMission& flown) {
@@ -301,28 +304,6 @@ class Gate {
     } else {
       report.notes.emplace_back(
           "the task is judged by places, lines and stops, not by photos (check --survey)");
-    }
-  }
-
-  void add_cures(PlanReport& report, const std::vector<FlownMission>& flown) {
-    Cures search = cures(flown);
-    std::map<std::pair<std::size_t, std::size_t>, std::optional<Cure>> found;
-    for (std::size_t n = 0; n < report.findings.size(); ++n) {
-      if (!ways_[n]) {
-        continue;
-      }
-      if (!found.contains(*ways_[n]) && !search.is_exhausted()) {
-        const Violation& violation = report.findings[n].violation;
-        const double off = violation.unit == "m" ? std::abs(violation.value - violation.limit) : 0;
-        found[*ways_[n]] = search.find(ways_[n]->first, ways_[n]->second, off);
-      }
-      if (const auto cure = found.find(*ways_[n]); cure != found.end()) {
-        report.findings[n].cure = cure->second;
-      }
-    }
-    if (search.is_exhausted()) {
-      report.notes.emplace_back(
-          "not every cure was searched for: --fix searches longer, and writes the cured mission");
     }
   }
 
@@ -366,8 +347,7 @@ class Gate {
   ZoneNames names_;
   bool is_drawn_;
   std::vector<Autopilot> autopilots_;
-  /// Of each finding, if it is of a way: from and to which command.
-  std::vector<std::optional<std::pair<std::size_t, std::size_t>>> ways_;
+  std::vector<std::optional<PlanCures::Way>> ways_;  ///< of each finding, if it is of one
 };
 
 /// The mission as it is drawn: without a landing, which is flown to at the height of the item
@@ -514,8 +494,7 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
                       const Mission& world, const GateOptions& options) {
   PlanReport report;
   report.file = file;
-  Request request = world.request;
-  request.world = std::make_shared<const World>(world.truth);
+  Request request = judged_in(world);
   try {
     expect_on_ground(plan, world.truth);
   } catch (const Error& error) {
@@ -559,11 +538,24 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
   if (!options.battery_problem.empty()) {
     report.notes.push_back("not judged: " + options.battery_problem);
   }
+  if (const auto height = height_of_home(plan, world.truth)) {
+    const std::size_t left =
+        judge_plan(file, with_home_at(plan, *height), world, options).findings.size();
+    report.findings.front().cure =
+        "set home's altitude to " + rounded_text(*height, 1) + " m: then " +
+        (left == 0 ? "the mission passes"
+                   : std::to_string(left) + " of " + counted(report.findings.size(), "violation") +
+                         " are left");
+  }
   return report;
 }
 
 std::optional<formats::MissionFile> cured_plan(const formats::MissionFile& plan,
                                                const Mission& world, const GateOptions& options) {
-  return Gate(plan, world, options).cured();
+  formats::MissionFile begun = plan;
+  if (const auto height = height_of_home(plan, world.truth)) {
+    begun = with_home_at(std::move(begun), *height);
+  }
+  return Gate(with_rally_raised(std::move(begun), judged_in(world)), world, options).cured();
 }
 }  // namespace altiplan::host

@@ -22,7 +22,7 @@ struct Finding {
   std::string what{};              ///< of the part of the flight, "" for a way between two items
   int item = 0;                    ///< the number of the last of them; 0: the format has none
   std::optional<Vec3> at{};        ///< where it is worst, within a metre, if anywhere
-  std::optional<Cure> cure{};      ///< of one item
+  std::string cure{};              ///< "raise item 3 (waypoint) by 12.4 m"; "": none is found
   std::string zone{};              ///< name of the violated layer's part, "" if it has none
   bool is_over_void = false;       ///< there the elevation model has no height
   bool is_unjudged = false;        ///< nothing is known to be wrong
@@ -166,6 +166,12 @@ std::string in_glide_words(const RefusedReturn& refused, const PlanReport& repor
 /// "from 3 min 12 s (item 4 (waypoint)) to 3 min 40 s (item 5 (waypoint)), worst at …: a return's
 /// …"
 std::string in_words(const RefusedReturn& refused, const PlanReport& report);
+
+/// Findings whose sentences differ in figures alone, as one: the worst of them with all the items.
+std::vector<Finding> joined_findings(const std::vector<Finding>& findings);
+
+/// "items 1 to 3, 5"; their names where the file numbers nothing.
+std::string items_in_words(const std::vector<std::string>& names, const std::vector<int>& numbers);
 
 /// "pass", "fail", "not judged"
 const char* word_of(Verdict verdict);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "altiplan/error.hpp"
 #include "host/base/words.hpp"
@@ -57,11 +58,82 @@ std::string PlanReport::height_in_words() const {
 
 std::string EnergyUse::in_words() const {
   const auto one = [](double value) { return with_decimals(value, 1); };
-  const std::string slowest = std::isfinite(max_wh) ? " to " + one(max_wh) + " Wh" : " Wh or more";
-  return one(min_wh) + slowest + " of " + one(battery.usable_wh()) +
-         " Wh that may be used (battery " + one(battery.capacity_wh) + " Wh, reserve " +
-         with_decimals(100 * battery.reserve, 0) + " %), up to " +
-         with_decimals(farthest_m / 1000, 3) + " km from home";
+  const std::string use = std::isfinite(max_wh)
+                              ? one(min_wh) + " to " + one(max_wh) + " Wh of "
+                              : "more than any battery holds, for nothing ends it, of ";
+  return use + one(battery.usable_wh()) + " Wh that may be used (battery " +
+         one(battery.capacity_wh) + " Wh, reserve " + with_decimals(100 * battery.reserve, 0) +
+         " %), up to " + with_decimals(farthest_m / 1000, 3) + " km from home";
+}
+
+std::string items_in_words(const std::vector<std::string>& names, const std::vector<int>& numbers) {
+  constexpr std::size_t kNamed = 12;
+  const std::set<int> all(numbers.begin(), numbers.end());
+  if (names.size() == 1 || all.contains(0)) {
+    return listed(names, kNamed);
+  }
+  std::string words = "items ";
+  std::size_t runs = 0;
+  for (auto first = all.begin(); first != all.end(); ++runs) {
+    auto last = first;
+    while (std::next(last) != all.end() && *std::next(last) == *last + 1) {
+      ++last;
+    }
+    words += (runs > 0 ? ", " : "") + std::to_string(*first) +
+             (first == last ? "" : (*last > *first + 1 ? " to " : ", ") + std::to_string(*last));
+    first = std::next(last);
+  }
+  return runs <= kNamed ? words
+                        : std::to_string(all.size()) + " items from " +
+                              std::to_string(*all.begin()) + " to " + std::to_string(*all.rbegin());
+}
+
+std::vector<Finding> joined_findings(const std::vector<Finding>& findings) {
+  struct Group {
+    std::vector<const Finding*> all;
+    std::string shape;
+  };
+  std::vector<Group> groups;
+  for (const Finding& finding : findings) {
+    std::string shape;
+    for (const char letter : finding.violation.message) {
+      shape += letter >= '0' && letter <= '9' ? "" : std::string(1, letter);
+    }
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
+      const Finding& first = *other.all.front();
+      return !finding.at && finding.items.size() == 1 && !first.at && first.items.size() == 1 &&
+             other.shape == shape && first.cure == finding.cure &&
+             first.violation.constraint == finding.violation.constraint;
+    });
+    if (group != groups.end()) {
+      group->all.push_back(&finding);
+    } else {
+      groups.push_back({{&finding}, shape});
+    }
+  }
+  std::vector<Finding> joined;
+  for (const Group& group : groups) {
+    const auto off = [](const Finding* one) {
+      return std::abs(one->violation.value - one->violation.limit);
+    };
+    const Finding& worst =
+        **std::max_element(group.all.begin(), group.all.end(),
+                           [&](const Finding* a, const Finding* b) { return off(a) < off(b); });
+    joined.push_back(worst);
+    if (group.all.size() > 1) {
+      std::vector<std::string> names;
+      std::vector<int> numbers;
+      bool is_equal = true;
+      for (const Finding* one : group.all) {
+        names.push_back(one->items.front());
+        numbers.push_back(one->item);
+        is_equal = is_equal && one->violation.message == worst.violation.message;
+      }
+      joined.back().items = {items_in_words(names, numbers)};
+      joined.back().violation.message += is_equal ? "" : ", the worst at " + worst.items.front();
+    }
+  }
+  return joined;
 }
 
 const RefusedReturn* ReturnsReport::worst() const {
