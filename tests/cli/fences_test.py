@@ -68,7 +68,7 @@ class Fences(PlanCase):
             self.plan(points, fences)
             one, = self.violations()
             self.assertEqual((one["layer"], one["zone"]), ("fence of the mission", zone))
-            self.assertIn(f"'{zone}' of 'fence of the mission'", one["message"])
+            self.assertIn(f"outside the fence '{zone}'", one["message"])
         self.plan(HIGH[2:], [("west", WEST)], [("yard", True, [36.6, -84.2], 20000)])
         self.assertEqual(self.violations()[0]["zone"], "west")
 

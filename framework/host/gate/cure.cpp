@@ -95,14 +95,20 @@ double share_along(const FlownPart& part, const Vec3& at) {
   return length > 0 ? std::clamp((at - from).head<2>().dot(way) / length, 0.0, 1.0) : 1;
 }
 
-/// The greatest change of a height.
-double greatest_rise(const formats::MissionFile& before, const formats::MissionFile& after) {
+/// Changes of heights: their sum, and the greatest of them.
+struct Rises {
+  double sum = 0;
   double greatest = 0;
+};
+
+Rises rises_of(const formats::MissionFile& before, const formats::MissionFile& after) {
+  Rises rises;
   for (std::size_t n = 0; n < before.commands.size(); ++n) {
-    greatest =
-        std::max(greatest, std::abs(after.commands[n].altitude_m - before.commands[n].altitude_m));
+    const double rise = std::abs(after.commands[n].altitude_m - before.commands[n].altitude_m);
+    rises.sum += rise;
+    rises.greatest = std::max(rises.greatest, rise);
   }
-  return greatest;
+  return rises;
 }
 
 /// What speaks against flights beside the paths that are flown: rules, and the commands that break
@@ -362,7 +368,7 @@ std::optional<formats::MissionFile> Cures::cured() {
   max_work_ = kMaxWorkOfAll;
   const formats::MissionFile whole = plan_;
   std::optional<formats::MissionFile> best;
-  const auto is_near = [&] { return best && greatest_rise(whole, *best) <= kFar; };
+  const auto is_near = [&] { return best && rises_of(whole, *best).greatest <= kFar; };
   const auto search_from = [&](const formats::MissionFile& begin) {
     for (const bool at_once : {false, true}) {
       if (is_near()) {
@@ -375,7 +381,7 @@ std::optional<formats::MissionFile> Cures::cured() {
       }
       const auto found = cured_one_by_one();
       if (found && objections_to(fly_(*found)).empty() &&
-          (!best || greatest_rise(whole, *found) < greatest_rise(whole, *best))) {
+          (!best || rises_of(whole, *found).sum < rises_of(whole, *best).sum)) {
         best = found;
       }
     }

@@ -63,7 +63,7 @@ class Cures {
   /// if fewer parts of the flight are not valid then.
   std::optional<AboveHome> above_home();
 
-  /// The mission changed until it is valid, with the smallest greatest rise that is found; none
+  /// The mission changed until it is valid, with the smallest sum of rises that is found; none
   /// where that fails.
   std::optional<formats::MissionFile> cured();
 
