@@ -83,7 +83,7 @@ class Zones(unittest.TestCase):
                 self.verdict(file, 120, code=0)  # below its floor
                 self.assertIn("'hospital' of 'fence'", self.verdict(file, 300, code=1))
                 self.verdict(file, 410, code=0)  # above its ceiling
-                self.assertIn("of 'fence'", self.verdict(file, 950, code=1))  # above the county's
+                self.assertIn("outside the fence 'county'", self.verdict(file, 950, code=1))  # above the county's
 
     def test_a_plan_keeps_the_names_of_its_fence(self):
         self.call("export", "result.json", "-o", "route.plan")
