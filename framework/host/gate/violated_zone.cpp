@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "altiplan/ground.hpp"
-#include "host/base/words.hpp"
 
 namespace altiplan::host {
 
@@ -17,18 +16,6 @@ bool is_fence(const Drawing& drawing, const std::string& name) {
   });
 }
 
-/// What is outside a fence lies in no zone: "lies up to 352.00 m outside the fence 'field', where
-/// …"
-void say_fence(Violation& violation, const std::string& name) {
-  const std::size_t rest = violation.message.find(", where ");
-  const std::string metres = with_decimals(std::abs(violation.value), 2) + " m";
-  const std::string where =
-      violation.value >= 0             ? "comes to " + metres + " of the border of the fence"
-      : std::isfinite(violation.value) ? "lies up to " + metres + " outside the fence"
-                                       : "lies outside the fence";
-  violation.message =
-      where + " '" + name + "'" + (rest == std::string::npos ? "" : violation.message.substr(rest));
-}
 }  // namespace
 
 void ZoneNames::add_to(Finding& finding) {
@@ -39,11 +26,11 @@ void ZoneNames::add_to(Finding& finding) {
       drawing = drawings_.emplace(layer->id, layer->environment->drawing()).first;
     }
     finding.zone = drawing->second ? name_at(*drawing->second, *finding.at) : "";
-    if (!finding.zone.empty() && finding.violation.constraint == "clearance" &&
-        is_fence(*drawing->second, finding.zone)) {
-      say_fence(finding.violation, finding.zone);
-    } else if (!finding.zone.empty()) {
-      finding.violation.message += ": '" + finding.zone + "' of '" + layer->id + "'";
+    if (!finding.zone.empty()) {  // what is outside a fence lies in no zone
+      const char* what = !is_fence(*drawing->second, finding.zone) ? ": '"
+                         : finding.violation.value < 0             ? ": outside the fence '"
+                                                                   : ": the fence '";
+      finding.violation.message += what + finding.zone + "' of '" + layer->id + "'";
     }
   }
 }

@@ -16,7 +16,8 @@ class LastRead {
  public:
   /// `parse(file, text)`, unless that is what was read last.
   template <class Parse>
-  std::shared_ptr<const T> get(const std::string& file, const std::string& text, const Parse& parse) {
+  std::shared_ptr<const T> get(const std::string& file, const std::string& text,
+                               const Parse& parse) {
     constexpr std::size_t kMaxKept = 16 << 20;
     const std::lock_guard lock(mutex_);
     if (!last_ || last_->file != file || last_->text != text) {

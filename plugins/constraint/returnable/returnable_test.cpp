@@ -234,6 +234,9 @@ TEST(Returnable, TheJudgeNamesThePlaceWithoutAWayHome) {
   // Over a wall to the goal, where the wind lets nothing fly back.
   Request request = request_in({}, {5, 5, 5}, {95, 5, 5}, {{0, 0, 0}, {100, 10, 10}});
   request.vehicle.speed_mps = 10;
+  Wing wing;
+  wing.airspeed_mps = 10;
+  request.vehicle.wing = wing;
   request.wind.layers = {{-kInfinity, {12, 0, 0}}};
   apply_constraints(
       request,

@@ -7,12 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "altiplan/energy.hpp"
 #include "altiplan/kit/lattice/lattice.hpp"
 #include "altiplan/kit/zero_memory.hpp"
-
-namespace altiplan {
-class Power;
-}
 
 namespace altiplan::kit {
 
