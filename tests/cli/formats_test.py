@@ -306,6 +306,17 @@ class Formats(unittest.TestCase):
             altiplan("check", path, *options, "--speed", "1", code=1)
             altiplan("check", path, *options[:4], code=1)
 
+    def test_a_climb_before_the_first_point(self):
+        with zipfile.ZipFile(io.BytesIO(self.export("wpml")[0])) as archive:
+            files = {name: archive.read(name).decode() for name in archive.namelist()}
+        high = io.BytesIO()
+        with zipfile.ZipFile(high, "w") as archive:
+            for name, text in files.items():
+                archive.writestr(name, re.sub(r"(<wpml:takeOffSecurityHeight>)[^<]*", r"\g<1>1400", text))
+        path = self.file("high.kmz", high.getvalue())
+        _, err = altiplan("check", path, "--terrain", TERRAIN, code=3)
+        self.assertIn("DJI climbs to the takeOffSecurityHeight of 1400 m first", err)
+
     def test_a_template_that_contradicts_the_waylines(self):
         """DJI Pilot makes the waylines anew from it: what passes may not be what is flown."""
         with zipfile.ZipFile(io.BytesIO(self.export("wpml")[0])) as archive:

@@ -393,7 +393,9 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
   }
   host::write_file(*plan.fixed, better);
   if (!plan.json) {
-    std::printf("fixed: %s passes:\n%s", plan.fixed->c_str(), words.c_str());
+    std::printf("fixed: %s passes%s:\n%s", plan.fixed->c_str(),
+                report.returns ? ", but for its returns, which --fix-returns looks at" : "",
+                words.c_str());
   }
 }
 

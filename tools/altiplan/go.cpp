@@ -64,12 +64,12 @@ void expect_runways_fit(GoArguments& arguments) {
   };
   expect_on_ground("--from", arguments.from, uses_runway(arguments, arguments.takeoff));
   expect_on_ground("--to", arguments.to, uses_runway(arguments, arguments.land));
-  if (arguments.runway_deg && !arguments.takeoff && !arguments.land) {
-    throw UsageError{"--runway: give --takeoff, --land or both"};
-  }
   if (arguments.runway_deg && (!arguments.wish.turn_radius_m || arguments.wish.is_vtol())) {
     throw UsageError{
         "--runway: a copter and a VTOL need none; an aeroplane is planned for with --wing"};
+  }
+  if (arguments.runway_deg && !arguments.takeoff && !arguments.land) {
+    throw UsageError{"--runway: give --takeoff, --land or both"};
   }
 }
 

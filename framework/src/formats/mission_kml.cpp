@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
@@ -166,6 +168,8 @@ class KmlReader {
       if (place.lon != 0 || place.lat != 0) {  // else none is known
         mission_.home = place;
       }
+    } else if (name == "takeOffSecurityHeight") {
+      security_m_ = number_of(trimmed(node.text().get()));
     } else if (name == "waypointTurnMode") {
       expect_flown_as_drawn(node, kStops);
     } else if (name == "useGlobalTurnParam" && trimmed(node.text().get()) == "1") {
@@ -188,6 +192,7 @@ class KmlReader {
           "a template of DJI, from which DJI Pilot makes what is flown: expected the KMZ, or the "
           "waylines.wpml in it";
     }
+    expect_climb_to_first();
     if (lines_ > 1) {
       mission_.route_problem =
           "expected one LineString as the route, found " + std::to_string(lines_);
@@ -237,6 +242,20 @@ class KmlReader {
       mission_.route_problem = "how DJI flies the " + std::string(local_name(node)) + " '" +
                                std::string(found.substr(0, 60)) + "' is not judged, only " +
                                std::string(word);
+    }
+  }
+
+  /// DJI climbs to that height above its start before it flies to the first point.
+  void expect_climb_to_first() {
+    constexpr double kLowest = 1.2;  // metres that it may be
+    if (points_.items.empty() || points_.items.front().at.frame != AltitudeFrame::home) {
+      return;
+    }
+    const double first = std::max(points_.items.front().at.altitude_m, kLowest);
+    if (security_m_ > first + 0.01 && mission_.route_problem.empty()) {
+      mission_.route_problem = "DJI climbs to the takeOffSecurityHeight of " +
+                               std::to_string(std::lround(security_m_)) +
+                               " m first, above its first point, which is not judged";
     }
   }
 
@@ -401,6 +420,7 @@ class KmlReader {
   std::size_t links_ = 0;
   std::size_t tracks_ = 0;
   bool is_template_ = false;
+  double security_m_ = 0;
 };
 }  // namespace
 
