@@ -237,8 +237,9 @@ TEST_F(Published, ManyZonesAnswerAsEachOfThem) {
 }
 
 TEST_F(Published, AFloorAboveTheCeilingIsSaid) {
-  const char* kNothing = "nothing is closed, as the ceiling is below the floor, or the ground";
-  const char* kPartly = "or the ground, over parts of 1 zones";
+  constexpr const char* kNothing =
+      "nothing is closed, as the ceiling is below the floor, or the ground";
+  constexpr const char* kPartly = "or the ground, over parts of 1 zones";
   double low = kInfinity;
   double high = -kInfinity;
   for (double x = 500; x <= 900; x += 10) {
