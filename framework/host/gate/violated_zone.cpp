@@ -7,15 +7,14 @@
 #include "altiplan/ground.hpp"
 
 namespace altiplan::host {
-
 namespace {
+
 /// True if a zone of that name keeps the vehicle in, and no other has its name.
 bool is_fence(const Drawing& drawing, const std::string& name) {
   return std::all_of(drawing.shapes.begin(), drawing.shapes.end(), [&](const Drawn& drawn) {
     return drawn.name != name || drawn.role == Drawn::Role::keep_in;
   });
 }
-
 }  // namespace
 
 void ZoneNames::add_to(Finding& finding) {

@@ -17,6 +17,7 @@
 #include "altiplan/flown_route.hpp"
 #include "altiplan/kit/lattice/home_field.hpp"
 #include "altiplan/kit/lattice/lattice_params.hpp"
+#include "altiplan/kit/stated_power.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/total_limit.hpp"
 
@@ -32,7 +33,7 @@ struct Params {
   std::vector<Home> homes;
   Vec3 cell_m{50, 50, 10};
   std::optional<double> maximum_wh;
-  std::optional<double> power_w;
+  kit::StatedPower power;
 
   void describe(Fields& f) {
     f("homes", homes).doc("places to come home to; default: the start");
@@ -41,29 +42,9 @@ struct Params {
         .unit("Wh")
         .greater_than(0)
         .doc("what may be used until home; default: what the vehicle's battery may give");
-    f("power_w", power_w)
-        .unit("W")
-        .greater_than(0)
-        .doc("power in all flight; default: by the vehicle's energy");
+    power.describe(f);
   }
 };
-
-struct ConstantPower final : Power {
-  double power_w = 0;
-  double watts(const SteadyFlight&) const override { return power_w; }
-};
-
-std::shared_ptr<const Power> power_of(const Params& params, const Vehicle& vehicle) {
-  if (params.power_w) {
-    auto power = std::make_shared<ConstantPower>();
-    power->power_w = *params.power_w;
-    return power;
-  }
-  if (vehicle.energy == nullptr) {
-    throw Error("the power is not known: expected vehicle.energy in the scenario, or power_w");
-  }
-  return vehicle.energy->power;
-}
 
 double available_wh(const Params& params, const Vehicle& vehicle) {
   const double wh = params.maximum_wh           ? *params.maximum_wh
@@ -98,17 +79,20 @@ class FlightEnergy final : public Objective {
 
 /// What a field of ways home depends on, of requests of one scenario.
 struct Problem {
-  explicit Problem(const Request& request)
-      : world(request.world), volume(request.volume), limits(request.limits) {
+  Problem(const Request& request, std::vector<Vec3> ways_end)
+      : homes(std::move(ways_end)),
+        world(request.world),
+        volume(request.volume),
+        limits(request.limits) {
     for (const NamedConstraint& named : request.constraints) {
       constraints.push_back(named.constraint.get());
     }
   }
 
-  bool is_of(const Request& request) const {
+  bool is_of(const Request& request, const std::vector<Vec3>& ways_end) const {
     const Limits& a = limits;
     const Limits& b = request.limits;
-    return world == request.world && volume.min == request.volume.min &&
+    return homes == ways_end && world == request.world && volume.min == request.volume.min &&
            volume.max == request.volume.max && a.min_clearance == b.min_clearance &&
            a.min_ground_clearance == b.min_ground_clearance && a.max_climb == b.max_climb &&
            a.max_sink == b.max_sink &&
@@ -123,6 +107,7 @@ struct Problem {
                       });
   }
 
+  std::vector<Vec3> homes;
   std::shared_ptr<const World> world;
   Box volume;
   Limits limits;
@@ -132,7 +117,7 @@ struct Problem {
 class Returnable final : public TotalLimit {
  public:
   Returnable(const Params& params, const Site& site)
-      : Returnable(params, site, power_of(params, site.vehicle)) {}
+      : Returnable(params, site, params.power.of(site.vehicle)) {}
 
  private:
   Returnable(const Params& params, const Site& site, std::shared_ptr<const Power> power)
@@ -157,19 +142,20 @@ class Returnable final : public TotalLimit {
   /// Searched once for each problem: of routes, of tracks, and of a world that has changed.
   std::shared_ptr<const kit::HomeField> field(const Request& request) const {
     constexpr std::size_t kKept = 4;
+    const std::vector<Vec3> homes =
+        homes_.empty() ? std::vector<Vec3>{request.start.position} : homes_;
     const std::lock_guard lock(mutex_);
     for (const auto& [of, field] : known_) {
-      if (of.is_of(request)) {
+      if (of.is_of(request, homes)) {
         return field;
       }
     }
-    auto made = std::make_shared<const kit::HomeField>(
-        request, homes_.empty() ? std::vector{request.start.position} : homes_, cell_m_,
-        kit::HomeField::energy(request, power_));
+    auto made = std::make_shared<const kit::HomeField>(request, homes, cell_m_,
+                                                       kit::HomeField::energy(request, power_));
     if (known_.size() == kKept) {
       known_.erase(known_.begin());
     }
-    known_.emplace_back(Problem(request), made);
+    known_.emplace_back(Problem(request, homes), made);
     return made;
   }
 

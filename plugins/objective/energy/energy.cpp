@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "altiplan/error.hpp"
 #include "altiplan/flown_route.hpp"
+#include "altiplan/kit/stated_power.hpp"
 #include "altiplan/objective.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/request.hpp"
@@ -16,35 +16,12 @@
 namespace {
 using namespace altiplan;
 
-struct Params {
-  std::optional<double> power_w;
-
-  void describe(Fields& f) {
-    f("power_w", power_w)
-        .unit("W")
-        .greater_than(0)
-        .doc("power in all flight; default: by the vehicle's energy");
-  }
-};
-
-struct ConstantPower final : Power {
-  double power_w = 0;
-  double watts(const SteadyFlight&) const override { return power_w; }
-};
+using Params = kit::StatedPower;
 
 /// Wh of flight; a whole route takes what stops and accelerations do as well.
 class FlightEnergy final : public Objective {
  public:
-  FlightEnergy(const Params& params, const Site& site) {
-    if (params.power_w) {
-      auto power = std::make_shared<ConstantPower>();
-      power->power_w = *params.power_w;
-      power_ = power;
-    } else if (site.vehicle.energy != nullptr) {
-      power_ = site.vehicle.energy->power;
-    } else {
-      throw Error("the power is not known: expected vehicle.energy in the scenario, or power_w");
-    }
+  FlightEnergy(const Params& params, const Site& site) : power_(params.of(site.vehicle)) {
     least_w_ = params.power_w ? *params.power_w : least_watts(site.vehicle, *power_);
   }
 
