@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 HOME = "47,8,500"
 SPEEDUP = 10
@@ -84,13 +85,9 @@ class Vehicle:
 class FlownCase(unittest.TestCase):
     program = sources = None
 
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix="altiplan_fly_")
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="altiplan_fly_")
+        self.addCleanup(shutil.rmtree, self.folder)
 
     def path(self, name):
         return os.path.join(self.folder, name)
@@ -149,3 +146,26 @@ class FlownCase(unittest.TestCase):
     def flight(self):
         with open(self.path("flown.json"), encoding="utf-8") as file:
             return json.load(file)["flight"]
+
+
+def run_together(names, flights=8):
+    """The tests of those names, of the main file by default, so many at a time, for they wait for
+    the clock more than they compute: true if none fails."""
+    loader = unittest.defaultTestLoader
+    main = sys.modules["__main__"]
+    tests, suites = [], [loader.loadTestsFromNames(names, main) if names else
+                         loader.loadTestsFromModule(main)]
+    for suite in suites:  # grows
+        for test in suite:
+            (suites if isinstance(test, unittest.TestSuite) else tests).append(test)
+
+    def failures(test):
+        result = test.run()
+        print("FAILED" if result.failures or result.errors else "skipped" if result.skipped else "ok",
+              test.id(), flush=True)
+        return [text for _, text in result.failures + result.errors]
+
+    with ThreadPoolExecutor(flights) as pool:
+        failed = [text for texts in pool.map(failures, tests) for text in texts]
+    print(*failed, sep="\n")
+    return bool(tests) and not failed

@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 
-from flown_case import SPEEDUP, FlownCase, unittest
+from flown_case import SPEEDUP, FlownCase, run_together
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from night import by_day  # noqa: E402
@@ -336,4 +336,4 @@ if __name__ == "__main__":
     if not os.path.exists(os.path.join(FlownCase.sources, "tests", "link", "vehicle")):
         print("skipped: tests/link/vehicle is missing")
         sys.exit(77)
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    sys.exit(0 if run_together(sys.argv[3:]) else 1)
