@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from night import by_day  # noqa: E402
+from night import by_day, by_night  # noqa: E402
 
 PROGRAM, SOURCES = sys.argv[1:3]
 DATA = pathlib.Path(os.environ.get("ALTIPLAN_TEST_DATA", f"{SOURCES}/../shared/data"))
@@ -138,6 +138,7 @@ class Go(unittest.TestCase):
                            "altitude: {datum: ground, max_m: 120, applies_to: track}"):
             self.assertIn("  - " + constraint, text)
 
+    @by_night
     def test_a_wing(self):
         out = self.go("--terrain", TERRAIN, *ENDS, "--wing", "80", "--via", "-84.30,36.58,150",
                       "-o", "wing", folder="wing")
@@ -173,7 +174,7 @@ class Go(unittest.TestCase):
         wing = ["--wing", "80", "--speed", "22"]
         out, _ = self.call("go", "--terrain", TERRAIN, *VALLEY, *wing, "--wind", "5,0", "-o", "unknown", code=1)
         self.assertIn("minimum airspeed, 9 m/s, is not judged: give its parameters (--params)", out)
-        out, _ = self.call("go", *ends, *wing, "--params", "p.param", "-o", "wing")
+        out, _ = self.call("go", "--terrain", TERRAIN, *VALLEY, *wing, "--params", "p.param", "-o", "wing")
         self.assertIn("check: pass", out)
         for options, code, said in ((["--wing", "30", "--speed", "40"], 3, "take a bank of 80 degrees"),
                                     (["--wind", "12,3"], 3, "not less than the speed, 10 m/s"),

@@ -14,7 +14,7 @@ import unittest
 
 import numpy
 
-from edit_session import PROGRAM, Session
+from edit_session import PROGRAM, Session, by_night
 from plan_case import POINTS, TERRAIN, PlanCase, plan_of
 
 WEST, EAST, SOUTH, NORTH = -84.45, -84.13, 36.41, 36.73
@@ -140,6 +140,7 @@ class PageGround(PlanCase):
         self.gdal("gdal_translate", "palette.vrt", "palette.tif")
         return "palette.tif"
 
+    @by_night
     def test_a_large_image_is_thinned(self):
         self.gdal("gdal_create", "-of", "GTiff", "-outsize", "40000", "40000", "-bands", "1", "-co", "SPARSE_OK=TRUE", "-co",
                   "TILED=YES", "-co", "BLOCKXSIZE=4096", "-co", "BLOCKYSIZE=4096", *PLACED, "large.tif")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""flown_missions_test.py TRACK_IN_BAND SOURCES [MISSIONS]: random missions that the test vehicle flies stay in the band
+"""flown_missions_test.py TRACK_IN_BAND SOURCES: random missions that the test vehicle flies stay in the band
 that is predicted for ArduPilot.
 
 The vehicle is a point mass with limits of acceleration (copter), or airspeed, bank and L1 guidance (plane); it shares
@@ -19,7 +19,9 @@ from flavours import RTL
 from flight_case import at
 from station import HOME, item
 
-COUNT = int(sys.argv[3]) if len(sys.argv) > 3 else 10
+sys.path[1:1] = [str(SOURCES / "tests/support")]
+from night import by_day  # noqa: E402
+
 COLUMN = {"copter": 0, "plane": 1}
 
 
@@ -118,12 +120,12 @@ class FlownMissions(BandCase):
             self.expect_in_band(folder / "mission.waypoints", kind, "0" if kind == "plane" else "-")
 
     def test_copter(self):
-        for seed in range(COUNT):
+        for seed in by_day(range(100), 20):
             with self.subTest(seed=seed):
                 self.check("copter", seed)
 
     def test_plane(self):
-        for seed in range(COUNT):
+        for seed in by_day(range(100), 20):
             with self.subTest(seed=seed):
                 self.check("plane", seed)
 

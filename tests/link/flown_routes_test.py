@@ -159,12 +159,12 @@ class FlownRoutes(BandCase):
         self.expect_in_band(plan, kind, self.runway, TERRAIN, self.wind[1])
 
     def test_copter(self):
-        for seed in by_day(range(100), 50):
+        for seed in by_day(range(100), 100):
             with self.subTest(seed=seed):
                 self.check("copter", seed)
 
     def test_plane(self):
-        for seed in by_day(range(100), 50):
+        for seed in by_day(range(100), 100):
             with self.subTest(seed=seed):
                 self.check("plane", seed)
 
