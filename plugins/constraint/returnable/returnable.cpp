@@ -150,13 +150,22 @@ class Returnable final : public TotalLimit {
         return field;
       }
     }
-    auto made = std::make_shared<const kit::HomeField>(request, homes, cell_m_,
-                                                       kit::HomeField::energy(request, power_));
+    auto made = searched(request, homes);
     if (known_.size() == kKept) {
       known_.erase(known_.begin());
     }
     known_.emplace_back(Problem(request, homes), made);
     return made;
+  }
+
+  std::shared_ptr<const kit::HomeField> searched(const Request& request,
+                                                 const std::vector<Vec3>& homes) const {
+    try {
+      return std::make_shared<const kit::HomeField>(request, homes, cell_m_,
+                                                    kit::HomeField::energy(request, power_));
+    } catch (const ParameterError& error) {  // the step that asks may have a cell_m too
+      throw Error("the constraint 'returnable': " + error.key() + ": " + error.what());
+    }
   }
 
   std::shared_ptr<const Power> power_;

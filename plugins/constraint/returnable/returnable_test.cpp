@@ -249,8 +249,28 @@ TEST(Returnable, TheJudgeNamesThePlaceWithoutAWayHome) {
   EXPECT_EQ(judged.violations[0].constraint, "returnable");
   EXPECT_EQ(judged.violations[0].at, 1);
   EXPECT_NE(judged.violations[0].message.find("no way home"), std::string::npos);
-  EXPECT_EQ(make_planner("astar", "{cell_m: [10, 10, 10]}")->plan(request).status,
-            PlanStatus::no_route);
+  for (const char* planner : {"astar", "theta_star"}) {
+    const PlanResult none = make_planner(planner, "{cell_m: [10, 10, 10]}")->plan(request);
+    EXPECT_EQ(none.status, PlanStatus::no_route);
+    EXPECT_NE(none.message.find("pruned by returnable"), std::string::npos) << none.message;
+  }
+}
+
+TEST(Returnable, NamesItselfWhereItsCellsDoNotFit) {
+  Request request = request_in({}, {5, 5, 5}, {95, 5, 5}, {{0, 0, 0}, {100, 10, 10}});
+  apply_constraints(request,
+                    {{"returnable", make_constraint("returnable",
+                                                    "{cell_m: [1e-3, 1e-3, 1e-3], power_w: 100, "
+                                                    "maximum_wh: 90}")}},
+                    AppliesTo::route);
+  try {
+    make_planner("astar", "{cell_m: [10, 10, 10]}")->plan(request);
+    ADD_FAILURE();
+  } catch (const ParameterError& error) {  // as if it were the planner's own
+    ADD_FAILURE() << error.what();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("'returnable': cell_m"), std::string::npos);
+  }
 }
 
 TEST(Returnable, StopsCountUntilEachWaypoint) {

@@ -59,10 +59,7 @@ class LabelSearch : kit::GoalSearch {
       return with(route_to(fallback_, false), fallback_g_, false, status != PlanStatus::no_route);
     }
     progress_.memory_full = memory_full();
-    kit::SearchResult none = without(status, true);
-    none.result.message +=
-        pruned_ > 0 ? "; a limit on a total pruned " + std::to_string(pruned_) + " paths" : "";
-    return none;
+    return without(status, true);
   }
 
  private:
@@ -94,7 +91,7 @@ class LabelSearch : kit::GoalSearch {
     for (std::size_t k = 0; k < resources_.size(); ++k) {
       totals_[k] = before[k] + resources_[k].of(a, b, request_);
       if (!resources_[k].allows(totals_[k], b, request_)) {
-        ++pruned_;
+        progress_.pruned_by = resources_[k].name;
         return false;
       }
     }
@@ -212,6 +209,5 @@ class LabelSearch : kit::GoalSearch {
   std::vector<Label> labels_;
   std::vector<double> spent_;   ///< totals of each label
   std::vector<double> totals_;  ///< of the path at hand
-  std::int64_t pruned_ = 0;
 };
 }  // namespace altiplan::astar

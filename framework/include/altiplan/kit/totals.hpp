@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "altiplan/objective.hpp"
@@ -15,6 +16,7 @@ namespace altiplan::kit {
 struct Resource {
   const TotalLimit* limit = nullptr;
   double maximum = kInfinity;
+  std::string name;  ///< of the constraint
 
   double of(const Vec3& a, const Vec3& b, const Request& request) const {
     return limit == nullptr ? (b - a).norm()
@@ -43,25 +45,28 @@ inline std::vector<Resource> resources_of(const Request& request) {
     const bool adds_up = total != nullptr && !total->of().traits().time &&
                          !total->of().traits().waypoints;  // over legs
     if (adds_up) {
-      all.push_back({total, total->maximum()});
+      all.push_back({total, total->maximum(), named.name});
     }
   }
   if (request.limits.max_route_length < kInfinity && (request.objective || !all.empty())) {
-    all.push_back({nullptr, request.limits.max_route_length + kLengthTolerance});
+    all.push_back({nullptr, request.limits.max_route_length + kLengthTolerance, "route_length"});
   }
   return all;
 }
 
-/// True if some route that begins along the path may keep all limits; asked at its end alone.
-inline bool may_keep(const std::vector<Resource>& resources, const Polyline& path,
-                     const Request& request) {
-  return std::all_of(resources.begin(), resources.end(), [&](const Resource& resource) {
-    double taken = 0;
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      taken += resource.of(path[i - 1], path[i], request);
-    }
-    return resource.allows(taken, path.back(), request);
-  });
+/// The first whose limit no route keeps that begins along the path; null if there is none. Asked at
+/// its end alone.
+inline const Resource* used_up(const std::vector<Resource>& resources, const Polyline& path,
+                               const Request& request) {
+  const auto found =
+      std::find_if(resources.begin(), resources.end(), [&](const Resource& resource) {
+        double taken = 0;
+        for (std::size_t i = 1; i < path.size(); ++i) {
+          taken += resource.of(path[i - 1], path[i], request);
+        }
+        return !resource.allows(taken, path.back(), request);
+      });
+  return found == resources.end() ? nullptr : &*found;
 }
 
 /// True if the judge finds the whole route within all limits.

@@ -91,13 +91,17 @@ class CostedTheta : GoalSearch {
            rules_.any_leg_ok(looks_back_ ? before_node(a) : std::nullopt, position(a), b);
   }
 
-  bool may_keep_totals(std::uint32_t n, const Vec3& to) const {
+  bool may_keep_totals(std::uint32_t n, const Vec3& to) {
     if (resources_.empty()) {
       return true;
     }
     Polyline path = route_to(n, false);
     path.push_back(to);
-    return may_keep(resources_, path, request_);
+    const Resource* used = used_up(resources_, path, request_);
+    if (used != nullptr) {
+      progress_.pruned_by = used->name;
+    }
+    return used == nullptr;
   }
 
   void begin() {

@@ -243,16 +243,20 @@ void HomeField::search() {
   }
 }
 
-/// The cheapest of the ways from p that begin with a leg that may be flown.
-double HomeField::best_of(const Vec3& p, std::vector<Way> ways) const {
+/// The cheapest of the ways from p that begin with a leg that may be flown; `other` if that is no
+/// dearer.
+double HomeField::best_of(const Vec3& p, std::vector<Way> ways, double other) const {
   std::sort(ways.begin(), ways.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [cost, to] : ways) {
-    if (!std::isfinite(cost) || leg_ok(std::nullopt, p, to, request_)) {
+    if (!(cost < other)) {
+      break;
+    }
+    if (leg_ok(std::nullopt, p, to, request_)) {
       return cost;
     }
   }
-  return kInfinity;
+  return other;
 }
 
 double HomeField::from(const Vec3& p, double enough) const {
@@ -262,14 +266,15 @@ double HomeField::from(const Vec3& p, double enough) const {
     const double rest = at(link.cell);
     ways.emplace_back(rest + (rest < kInfinity && link.length > 0 ? cost_(p, there) : 0), there);
   }
-  const double over_lattice = best_of(p, ways);
-  if (over_lattice <= enough) {
+  const double over_lattice = best_of(p, ways, kInfinity);
+  if (over_lattice <= enough ||
+      (over_lattice == kInfinity && !leg_ok(std::nullopt, p, p, request_))) {  // it cannot be there
     return over_lattice;
   }
   ways.clear();
   for (const Vec3& home : homes_) {
     ways.emplace_back(p == home ? 0 : cost_(p, home), home);
   }
-  return std::min(over_lattice, best_of(p, ways));
+  return best_of(p, ways, over_lattice);
 }
 }  // namespace altiplan::kit

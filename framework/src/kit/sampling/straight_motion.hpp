@@ -142,7 +142,7 @@ class StraightMotion {
     }
     Polyline path = memory_.legs.way_to(from);
     path.push_back(to);
-    return may_keep(resources_, path, request_);
+    return used_up(resources_, path, request_) == nullptr;
   }
   /// True if below another parent nothing that is limited is more than it was, here and so in all
   /// of the branch.

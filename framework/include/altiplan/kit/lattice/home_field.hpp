@@ -49,7 +49,7 @@ class ALTIPLAN_API HomeField {
   static constexpr std::int32_t kLongest = 1 << 30;  ///< of all ways, in quanta
   struct Moves;
   using Way = std::pair<double, Vec3>;  ///< what it takes, and where its first leg leads
-  double best_of(const Vec3& p, std::vector<Way> ways) const;
+  double best_of(const Vec3& p, std::vector<Way> ways, double other) const;
   /// Columns of cells lie together, within a border: what is one step from a cell is near it in
   /// memory.
   std::uint32_t index(const Cell& c) const {

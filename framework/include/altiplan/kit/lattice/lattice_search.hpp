@@ -158,6 +158,7 @@ struct SearchStats {
   Vec3 nearest{0, 0, 0};  ///< the expanded cell nearest to the goal
   bool memory_full = false;
   bool too_long = false;  ///< route_length refused something
+  std::string pruned_by;  ///< the limit on a total that refused something
 };
 
 inline Counters counters(const SearchStats& progress, const Lattice& lattice,
@@ -189,6 +190,9 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress,
   text += refusals.empty() ? "" : "; refused moves: " + refusals;
   if (progress.too_long) {
     text += "; parts of the search pruned by route_length";
+  }
+  if (!progress.pruned_by.empty()) {
+    text += "; parts of the search pruned by " + progress.pruned_by;
   }
   return text;
 }
