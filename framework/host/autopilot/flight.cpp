@@ -28,6 +28,13 @@ void Flight::take(const TimeSpan& time) {
   }
 }
 
+void Flight::hold(double seconds) {
+  take({seconds, seconds});
+  if (!mission_.parts.empty()) {
+    mission_.parts.back().held_s += seconds;
+  }
+}
+
 void Flight::fly_again(std::size_t command, std::size_t last) {
   for (FlownPart& part : mission_.parts) {
     if (part.command >= command && part.command <= last) {

@@ -41,6 +41,8 @@ class Flight {
   FlownPart& begin(std::size_t command, std::string what);
   /// Ends the current part, which takes so long.
   void take(const TimeSpan& time);
+  /// The same, at the end of the current part.
+  void hold(double seconds);
   /// The parts of this command, or of the commands up to another, are flown until now again.
   void fly_again(std::size_t command, std::size_t last);
   void remark(Remark::Weight weight, const char* rule, std::size_t command, std::string message,

@@ -48,6 +48,7 @@ struct FlownPart {
   double begin_s = 0;      ///< earliest, from the beginning of the flight
   TimeSpan time;           ///< from the beginning of the flight to the end of the part
   double until_s = 0;      ///< latest end of the last time that it is flown
+  double held_s = 0;       ///< of its time, that it waits at its end
   double speed_mps = 0;    ///< the greatest that is sought along it; 0: none
   bool is_return = false;  ///< to home or a rally point, where no failsafe changes it
 };

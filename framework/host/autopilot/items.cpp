@@ -101,7 +101,7 @@ bool Walker::fly_hover(std::size_t n) {
   hover_->acceptance_m = acceptance;
   hover_->stops = hold > 0 || task != Task::waypoint;
   if (hold > 0) {
-    flight_.take({hold, hold});
+    flight_.hold(hold);
   }
   if (task == Task::loiter_forever) {
     flight_.take({0, kInfinity});

@@ -23,7 +23,11 @@ bool Walker::delay(std::size_t n) {
   }
   const double seconds = commands_[n].params[0];
   constexpr double kDay = 86400;
-  flight_.take(seconds > 0 ? TimeSpan{seconds, seconds} : TimeSpan{0, kDay});
+  if (seconds > 0) {
+    flight_.hold(seconds);
+  } else {
+    flight_.take({0, kDay});
+  }
   if (hover_) {
     hover_->go_on_circling(seconds > 0 ? seconds : kDay);
     hover_->stops = true;

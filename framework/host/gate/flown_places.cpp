@@ -100,7 +100,11 @@ FlownPlaces::FlownPlaces(const FlownPart& part, std::array<double, 2> time_s,
       time_s_(time_s),
       before_latest_s_(before_latest_s),
       from_(part.strips.front().from.head<2>()),
-      to_(to) {}
+      to_(to) {
+  for (const Strip& strip : part.strips) {
+    waits_within_m_ = std::max(waits_within_m_, part.held_s > 0 ? strip.reach_m : 0);
+  }
+}
 
 void FlownPlaces::judge(double finest_m, const Judge& is_valid, const Refuse& refuse) const {
   std::vector<const Strip*> strips;
@@ -120,8 +124,20 @@ double FlownPlaces::share_of(const Whereabouts& place, double beyond_m, double u
 }
 
 std::array<double, 2> FlownPlaces::times_of(const Whereabouts& place, double length_m) const {
-  const auto at = [&](double share) { return time_s_[0] + share * (time_s_[1] - time_s_[0]); };
-  return {at(share_of(place, -length_m / 2, 0)), at(share_of(place, length_m / 2, 1))};
+  const double arrived_s = std::max(time_s_[1] - part_->held_s, time_s_[0]);
+  const auto at = [&](double share) { return time_s_[0] + share * (arrived_s - time_s_[0]); };
+  const bool waits = share_of(place, length_m / 2 + waits_within_m_, 1) == 1;
+  return {at(share_of(place, -length_m / 2, 0)),
+          waits ? time_s_[1] : at(share_of(place, length_m / 2, 1))};
+}
+
+double FlownPlaces::latest_s(const Whereabouts& place) const {
+  // A part that is flown again counts as it is at its last end.
+  const double latest_s = std::max(part_->time.max_s, part_->until_s);
+  const double share =
+      part_->until_s > 0 ? 1 : share_of(place, place.radius_m + waits_within_m_, 1);
+  return share < 1 ? before_latest_s_ + share * (latest_s - part_->held_s - before_latest_s_)
+                   : latest_s;
 }
 
 std::vector<FlownPlaces> flown_places_of(const FlownMission& mission,

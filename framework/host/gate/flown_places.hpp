@@ -11,7 +11,8 @@
 namespace altiplan::host {
 
 /// A part of a flight as places in which the vehicle may be, and when it is there: in the middle
-/// between the fastest and the slowest flight. Along a part time passes evenly.
+/// between the fastest and the slowest flight. Along a part time passes evenly, but for what it
+/// waits at its end.
 class FlownPlaces {
  public:
   FlownPlaces(const FlownPart& part, std::array<double, 2> time_s, double before_latest_s,
@@ -19,8 +20,6 @@ class FlownPlaces {
 
   const FlownPart& part() const { return *part_; }
   double end_s() const { return time_s_[1]; }
-  /// Of the slowest flight when the part begins.
-  double latest_begin_s() const { return before_latest_s_; }
 
   using Judge = std::function<bool(const Whereabouts&)>;
   using Refuse = std::function<void(const Whereabouts&)>;
@@ -28,17 +27,21 @@ class FlownPlaces {
   /// wide, and are halved until they are valid, or refused when they are `finest_m` long.
   void judge(double finest_m, const Judge& is_valid, const Refuse& refuse) const;
 
-  /// How much of the part's time has passed so far beyond the place.
-  double share_of(const Whereabouts& place, double beyond_m, double unknown) const;
+  /// Latest time, of the slowest flight, at which it may be in a place.
+  double latest_s(const Whereabouts& place) const;
   /// From when to when it may be in a place that is so long.
   std::array<double, 2> times_of(const Whereabouts& place, double length_m) const;
 
  private:
+  /// How much of the part's way is flown so far beyond the place.
+  double share_of(const Whereabouts& place, double beyond_m, double unknown) const;
+
   const FlownPart* part_;
   std::array<double, 2> time_s_;
   double before_latest_s_;
   Eigen::Vector2d from_;
   Eigen::Vector2d to_;
+  double waits_within_m_ = 0;  ///< of its end
 };
 
 /// The parts of a mission that are flown somewhere, in their order.

@@ -89,13 +89,7 @@ class ReturnJudge {
     if (!battery_) {
       return 0;
     }
-    // A part that is flown again counts as it is at its last end.
-    const FlownPart& part = places_->part();
-    const double share = part.until_s > 0 ? 1 : places_->share_of(place, place.radius_m, 1);
-    const double latest_s = std::max(part.time.max_s, part.until_s);
-    const double begin_s = places_->latest_begin_s();
-    const double spent_s = share < 1 ? begin_s + share * (latest_s - begin_s) : latest_s;
-    return (spent_s + home.time.max_s) * battery_->power_w / 3600;
+    return (places_->latest_s(place) + home.time.max_s) * battery_->power_w / 3600;
   }
   bool is_too_much(double needed_wh) const {
     return battery_ && !(needed_wh <= battery_->usable_wh());
