@@ -156,6 +156,27 @@ class Returns(PlanCase):
                 del before["rallyPoints"], cured["rallyPoints"]
                 self.assertEqual(cured, before)
 
+    def test_cures_of_an_aeroplane_that_takes_off(self):
+        """A return from its take-off is not judged before nor after: what is refused is cured all the same."""
+        way = [(22, 0, 0, 60), (16, -700, 300, 120), (16, -700, 900, 190), (16, 0, 900, 260), (16, 1500, 600, 260),
+               (16, 1500, -600, 260), (16, 0, -900, 260), (16, -300, 0, 200)]
+        for file in ("cure.param", "cured.plan"):
+            told = self.returns(PLANE, way, "--runway", "270", "--fix-returns", file, code=1)
+            self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", "fail"), told)
+        unjudged = told["returns"]["not_judged"]
+        for mission, parameters in (("mission.plan", ("--params", "cure.param")), ("cured.plan", ())):
+            out, _ = self.call(mission, "--terrain", "ridge.asc", "--returns", "--json", "--runway", "270", *parameters,
+                               code=1)
+            returns = json.loads(out)["returns"]
+            self.assertEqual((returns["verdict"], returns["refused"]), ("not_judged", []))
+            self.assertEqual(returns["not_judged"], unjudged)
+        out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--runway", "270", "--fix-returns",
+                           "cure.param", code=1)
+        self.assertIn("fixed: cure.param leaves no return refused of those judged: RTL_ALTITUDE", out)
+        _, err = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--runway", "270", "--params",
+                           "cure.param", "--fix-returns", "other.param", code=1)
+        self.assertIn("other.param: not written", err)
+
     def test_no_rally_points_for_what_is_not_judged(self):
         """Of a VTOL no return is judged: that is said, and nothing written."""
         self.returns((12, 22), self.beyond(), code=1)
@@ -276,6 +297,22 @@ class Returns(PlanCase):
         self.assertGreater(more["point_of_no_return_s"], few["point_of_no_return_s"])
         _, err = self.call("mission.plan", "--terrain", "ridge.asc", "--battery", "30", "--power", "360", code=2)
         self.assertIn("--returns", err)
+
+    def test_a_wait_counts_where_it_is(self):
+        """On the way to a place where it waits for ten minutes it has not waited yet."""
+        battery = "--battery", "60", "--power", "360", "--reserve", "0"
+        for way in ([(22, 0, 0, 50), (16, 0, 900, 50), (19, 0, 1000, 50), (16, 0, 100, 50)],
+                    [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 1000, 50), (93, 0, 0, 0), (16, 0, 100, 50)]):
+            items = [item(n + 1, command, self.LAT + north / METRES if north else 0, self.LON if north else 0, z,
+                          params=(600 if command in (19, 93) else 0, 0, 0, 0)) for n, (command, _, north, z) in enumerate(way)]
+            items[0]["params"][4:6] = [self.LAT, self.LON]
+            self.write(items, firmwareType=3, vehicleType=2, plannedHomePosition=[self.LAT, self.LON, 400])
+            out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--json", *battery, code=1)
+            told = json.loads(out)
+            arrived = next(sum(one["time_s"]) / 2 for one in told["parts"]
+                           if one["items"] == ["item 2 (waypoint)", one["items"][-1]] and one["items"][-1].startswith("item 3"))
+            # It has 600 s: at its place it waits beyond that, not before.
+            self.assertAlmostEqual(told["returns"]["point_of_no_return_s"], arrived - 600, delta=5)
 
     def scenario(self, vehicle):
         (self.folder / "s.yaml").write_text(

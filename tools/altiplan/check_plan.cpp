@@ -428,7 +428,9 @@ void fix_returns(const PlanCheck& plan, const PlanReport& report, const std::str
     warn(file + ": not written: found no " + (by_rally ? "rally points" : "return height") +
          " with which the mission and its returns pass");
   } else if (!plan.json) {
-    std::printf("fixed: %s passes: %s\n", file.c_str(), words.c_str());
+    const std::string passes =
+        report.returns->unjudged.empty() ? "passes" : "leaves no return refused of those judged";
+    std::printf("fixed: %s %s: %s\n", file.c_str(), passes.c_str(), words.c_str());
   }
 }
 

@@ -9,6 +9,18 @@
 
 namespace altiplan::host {
 
+namespace {
+
+/// True if no return is refused, and all are judged that were before.
+bool is_cured(const ReturnsReport& report, const ReturnsReport& before) {
+  const auto& known = before.unjudged;
+  return report.refused.empty() &&
+         std::all_of(report.unjudged.begin(), report.unjudged.end(), [&](const std::string& why) {
+           return std::find(known.begin(), known.end(), why) != known.end();
+         });
+}
+}  // namespace
+
 std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats::MissionFile& plan,
                                           const Mission& world, const GateOptions& options) {
   const auto autopilots =
@@ -16,11 +28,15 @@ std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats
   if (plan.commands.empty() || autopilots.size() != 1) {
     return std::nullopt;
   }
+  const ReturnsReport before = judge_returns(plan, world, options);
+  if (is_cured(before, before) && judge_plan(file, plan, world, options).passed()) {
+    return std::nullopt;  // what is not judged no height cures
+  }
   GateOptions with = options;
   return min_return_height(autopilots.front(), options.flight.parameters,
                            [&](const ParameterFile& parameters) {
                              with.flight.parameters = parameters;
-                             return judge_returns(plan, world, with).verdict == Verdict::pass &&
+                             return is_cured(judge_returns(plan, world, with), before) &&
                                     judge_plan(file, plan, world, with).passed();
                            });
 }
@@ -30,10 +46,9 @@ namespace {
 using formats::MissionFile;
 using formats::MissionPoint;
 
-/// Seconds of the flight without a way home, and one for each stretch of them; infinite where that
-/// is not judged.
+/// Seconds of the flight without a way home, and one for each stretch of them.
 double refused_time(const ReturnsReport& report) {
-  double time = report.unjudged.empty() ? 0 : kInfinity;
+  double time = 0;
   for (const RefusedReturn& stretch : report.refused) {
     time += stretch.to_s - stretch.from_s + 1;
   }
@@ -52,10 +67,12 @@ class RallyCure {
   /// False if no points cure the returns.
   bool find() {
     const std::size_t own = plan_.rally.size();
-    ReturnsReport report = judge_returns(plan_, world_, options_);
-    while (report.verdict != Verdict::pass) {
-      // What is not judged no point cures.
-      if (!report.unjudged.empty() || plan_.rally.size() >= maximum() || tried_ > kMaxTries ||
+    before_ = judge_returns(plan_, world_, options_);
+    if (before_.refused.empty()) {
+      return false;  // what is not judged no point cures
+    }
+    for (ReturnsReport report = before_; !is_cured(report, before_);) {
+      if (report.refused.empty() || plan_.rally.size() >= maximum() || tried_ > kMaxTries ||
           !add_one(report)) {
         return false;
       }
@@ -77,7 +94,7 @@ class RallyCure {
     for (std::size_t n = plan_.rally.size(); n-- > own;) {
       MissionFile fewer = plan_;
       fewer.rally.erase(fewer.rally.begin() + std::ptrdiff_t(n));
-      if (judge_returns(fewer, world_, options_).verdict == Verdict::pass) {
+      if (is_cured(judge_returns(fewer, world_, options_), before_)) {
         plan_ = std::move(fewer);
         return true;
       }
@@ -180,6 +197,7 @@ class RallyCure {
   const Mission& world_;
   const GateOptions& options_;
   formats::Autopilot autopilot_;
+  ReturnsReport before_;
   double home_z_ = 0;
   int tried_ = 0;
 };

@@ -7,13 +7,14 @@
 namespace altiplan::host {
 
 /// The least height at which the autopilot returns, in whole metres above the present one and up to
-/// 600 m more, with which the mission and its failsafe returns pass, judged again with it; none
-/// where no height cures them, or several kinds of autopilot may fly the mission.
+/// 600 m more, with which the mission passes, none of its failsafe returns is refused, and all are
+/// judged that were before; none where no height cures them, or several kinds of autopilot may fly
+/// the mission.
 std::optional<ReturnCure> cure_of_returns(const std::string& file, const formats::MissionFile& plan,
                                           const Mission& world, const GateOptions& options);
 
-/// The mission with rally points beside its own with which it and its failsafe returns pass, judged
-/// again: none of them is needless. They lie on the flight, a copter's on ground beside it that is
+/// The mission with rally points beside its own that cure it in the same way: none of them is
+/// needless. They lie on the flight, a copter's on ground beside it that is
 /// flat by the model, for there it lands. None where no points cure them, up to the number that the
 /// autopilot stores.
 std::optional<formats::MissionFile> with_rally_cure(const std::string& file,
