@@ -220,6 +220,14 @@ class Returns(PlanCase):
         told = self.returns(PLANE, way, parameters={"RTL_ALTITUDE": 260}, code=0)
         self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
 
+    def test_an_aeroplane_above_its_return_height(self):
+        """It sinks on a line to home, as high above the ridge as far from home; from little above, at once."""
+        way = [(16, 2400, -300, 500), (16, 2400, 300, 500)]
+        self.assertEqual(self.returns(PLANE, way)["returns"]["verdict"], "pass")
+        for parameters in ({"ALT_SLOPE_MIN": 0}, {"ALT_SLOPE_MIN": 450}, {"RTL_ALTITUDE": 20}):
+            told = self.returns(PLANE, way, parameters=parameters)
+            self.assertEqual(told["returns"]["verdict"], "fail", parameters)
+
     def test_an_aeroplane_that_flies_fast_for_a_while(self):
         """Beside the ridge: it turns there at that speed, though the mission ends at another."""
         slow = [(16, 400, -200, 150), (16, 400, 500, 150), (16, 0, 600, 150)]

@@ -249,6 +249,10 @@ class Wing {
   /// at most `late_m` longer than its way.
   std::vector<Flight::Level> levels_of_return(double low, double high, const Destination& to,
                                               double turned_m, double late_m) const;
+  /// Of ArduPilot's, from above.
+  std::vector<Flight::Level> levels_on_line(double low, double top, const Destination& to,
+                                            const Whereabouts& place, double beside,
+                                            double circle_m) const;
   /// Where a member was after each step of time.
   struct Passed {
     Vec3 at;

@@ -647,11 +647,26 @@ std::vector<Flight::Level> Wing::levels_of_return(double low, double high, const
     }
     return levels;
   }
-  // It sinks on a line to the place, or at once.
+  // It may sink at once.
   const double rate = kQuick * sink_mps_;
   const double begin = -turned_m;
   const double begun = std::max(to.low, low - rate * (begin + late_m) / slow);
   return {{begin, begun, top}, {begin + (begun - to.low) / rate * slow, to.low, top}};
+}
+
+// Mode::update_target_altitude: the target is on a line from where it was to the middle of its
+// circle, by how far it has come along that way, until it takes up the circle. In a place of radius
+// r it may have begun r nearer to its end, and in other directions.
+std::vector<Flight::Level> Wing::levels_on_line(double low, double top, const Destination& to,
+                                                const Whereabouts& place, double beside,
+                                                double circle_m) const {
+  const double length = (to.at - place.at).norm();
+  const double lag_m = sink_mps_ * lag_s_ / (kSlow * kSlow);
+  const double begin =
+      -place.radius_m - (beside + place.radius_m) * place.radius_m / std::max(length, 1.0);
+  const double end = length - circle_m - 1.5 * l1_s_ * true_speed(1, top);
+  const double there = low - (low - to.low) * (end - begin) / (length - begin);
+  return {{begin, low - lag_m, top}, {end, there - lag_m, top}, {end, to.low, top}};
 }
 
 void Wing::return_from(std::size_t command, const Whereabouts& place, const Destination& to,
@@ -677,9 +692,14 @@ void Wing::return_from(std::size_t command, const Whereabouts& place, const Dest
   } else {
     levels = levels_of_return(bottom, top, to, turned_m, late_m);
   }
+  const double length = (to.at - place.at).norm();
+  const double circles_m = widest_radius(circle_at_home_m, to.high);
+  const bool is_near = length < 3 * turned_m;
+  if (slope_min_m_ > 0 && bottom - to.high >= slope_min_m_ && length > 3 * turned_m + circles_m) {
+    levels = levels_on_line(bottom, top, to, place, beside, circles_m);
+  }
   flight_.begin(command, "the way home");
   flight_.add_fan(place, beside, to.at, levels, kBesideTrack);
-  const double length = (to.at - place.at).norm();
   const double climb_s =
       circles ? (to.high - bottom) / (kSlow * climb_mps_) + 2 * kPi * beside / slow : 0;
   flight_.take({std::max(length - place.radius_m, 0.0) / fast, (length + late_m) / slow + climb_s});
@@ -690,13 +710,12 @@ void Wing::return_from(std::size_t command, const Whereabouts& place, const Dest
       last_low = std::min(last_low, level.low);
     }
   }
-  const bool is_near = length < 3 * turned_m;
   const double sunk = is_near ? 0 : std::max(0.0, kSlow * sink_mps_ / fast * (length - late_m));
   const double lag_m = sink_mps_ * lag_s_ / (kSlow * kSlow);
   const double last_high = std::min(std::max(top, to.high), std::max(to.high, top - sunk) + lag_m);
   flight_.begin(command, "the circle at home");
-  flight_.add_tower({to.at, widest_radius(circle_at_home_m, to.high), 0, 0},
-                    std::min(is_near ? bottom : last_low, least_there), last_high, kBesideTrack);
+  flight_.add_tower({to.at, circles_m, 0, 0}, std::min(is_near ? bottom : last_low, least_there),
+                    last_high, kBesideTrack);
 }
 
 // In a turn it sinks n² times as fast at most (n its load: the drag of its lift grows with n², the
