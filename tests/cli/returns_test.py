@@ -27,8 +27,9 @@ class Returns(PlanCase):
         write_ridge(self.folder, self.LAT, self.LON)
 
     def returns(self, vehicle, way, *options, parameters=None, rally=(), home=None, fence=None, code=None):
-        """`way`: (command, east of home, north, height above home), or (178, airspeed)."""
-        items = [item(n + 1, 178, 0, 0, 0, params=(0, one[1], -1, 0)) if len(one) == 2 else
+        """`way`: (command, east of home, north, height above home), (178, airspeed), or another order and its parameters."""
+        items = [item(n + 1, one[0], 0, 0, 0, frame=2,
+                      params=(*one[1:], 0, 0, 0, 0)[:4] if one[0] != 178 else (0, one[1], -1, 0)) if len(one) < 4 else
                  item(n + 1, one[0], self.LAT + one[2] / METRES,
                       self.LON + one[1] / METRES / math.cos(math.radians(self.LAT)), one[3])
                  for n, one in enumerate(way)]
@@ -242,6 +243,69 @@ class Returns(PlanCase):
         told = self.returns(PLANE, way, rally=[(2000, 300, 260)], code=0)  # it ends with a return to the rally point
         self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
 
+    AUTO_RTL = {"FS_THR_ENABLE": 6}
+    # Return paths on both sides of the ridge; the first is flown by the mission, too.
+    BEYOND = [(188,), (16, 1900, 200, 60), (189,), (21, 1900, 300, 0)]
+    AT_HOME = [(188,), (16, 100, -100, 100), (189,), (21, 0, -200, 0)]
+
+    def test_a_copter_that_joins_a_return_path(self):
+        way = self.beyond() + self.BEYOND + self.AT_HOME
+        told = self.returns(COPTER, way, parameters=self.AUTO_RTL, code=0)
+        self.assertEqual(told["returns"]["verdict"], "pass", told["returns"])
+        self.assertEqual(told["returns"]["parameters"]["FS_THR_ENABLE"], 6)
+        # Another failsafe returns home at 15 m: it counts as well, and so does the one that none changes.
+        for parameters in ({**self.AUTO_RTL, "BATT_FS_LOW_ACT": 2}, {"RTL_ALT_M": 15}):
+            told = self.returns(COPTER, way, parameters=parameters, code=1)
+            self.assertEqual(told["returns"]["refused"][0]["rule"], "ground", told["returns"])
+        # The landing that a return path lacks is joined in its place, and home where there is neither.
+        told = self.returns(COPTER, self.beyond() + [(189,), (21, 1900, 300, 0)] + self.AT_HOME[1:],
+                            parameters=self.AUTO_RTL)
+        self.assertNotIn("the way home", str(told["returns"]["refused"]))
+        told = self.returns(COPTER, self.beyond() + [(21, 1900, 300, 0)], parameters=self.AUTO_RTL, code=1)
+        self.assertIn("the way home", str(told["returns"]["refused"]))
+
+    def test_a_return_path_through_the_ridge(self):
+        """On the way to it, and along it."""
+        lands = self.beyond() + [(21, 1900, 300, 0)]
+        told = self.returns(COPTER, lands + self.AT_HOME, parameters=self.AUTO_RTL, code=1)
+        self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", "fail"), told)
+        self.assertIn("the way back to the mission: flies into the ground", told["returns"]["refused"][0]["message"])
+        path = [(188,), (16, 1900, 200, 60), (16, 100, 200, 60), (189,), (21, 0, 0, 0)]
+        told = self.returns(COPTER, lands + path, parameters=self.AUTO_RTL, code=1)
+        self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", "fail"), told)
+        self.assertIn("the way along the mission: flies into the ground", str(told["returns"]["refused"]))
+
+    def test_a_return_path_through_a_zone(self):
+        lon = self.LON + 2300 / METRES / math.cos(math.radians(self.LAT))
+        self.zones("z.json", self.around(lon, self.LAT + 200 / METRES, 0.001), 900)
+        lands = self.beyond() + self.BEYOND[:3]
+        for path, code in (([(21, 1900, 300, 0)], 0), ([(16, 2600, 200, 60), (21, 2600, 100, 0)], 1)):
+            told = self.returns(COPTER, [*lands, (21, 1900, 300, 0), self.BEYOND[0], (16, 1900, 190, 60), *path,
+                                         *self.AT_HOME], "--airspace", "z.json", parameters=self.AUTO_RTL, code=code)
+            self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", "fail" if code else "pass"), told)
+
+    def test_a_return_path_that_does_not_land(self):
+        way = [(22, 0, 0, 60), (16, -300, 0, 60), (21, -300, 100, 0), (188,), (16, -200, 100, 60), (16, -100, 100, 60)]
+        told = self.returns(COPTER, way, parameters=self.AUTO_RTL, code=1)
+        self.assertIn("ends in the air", str(told["returns"]["refused"]))
+
+    def test_an_aeroplane_that_joins_the_mission(self):
+        way = [(16, 300, 0, 260), (16, 1400, 0, 260), (16, 2000, 0, 260), (188,), (16, 2300, 300, 160), (189,),
+               (16, 2300, -400, 150), (21, 2300, -1400, 0)]
+        for parameters, verdict in (
+                ({"RTL_AUTOLAND": 4, "FS_SHORT_ACTN": 0}, "pass"), ({"RTL_AUTOLAND": 2}, "pass"), ({"RTL_AUTOLAND": 3}, "fail"),
+                ({"RTL_AUTOLAND": 1}, "fail"), ({"RTL_AUTOLAND": 1, "RTL_ALTITUDE": 260}, "pass"),
+                ({"RTL_AUTOLAND": 3, "RTL_ALTITUDE": 260}, "pass"),
+                ({"RTL_AUTOLAND": 3, "FS_LONG_ACTN": 0, "BATT_FS_LOW_ACT": 2}, "pass"),
+                ({"RTL_AUTOLAND": 3, "FS_LONG_ACTN": 1, "BATT_FS_LOW_ACT": 2}, "fail")):
+            with self.subTest(parameters):
+                told = self.returns(PLANE, way, parameters=parameters)
+                self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", verdict), told)
+        # A path on the other side of the ridge is reached through it.
+        way[4:5] = [(16, 300, 300, 100), (16, 300, 1200, 230), (16, 2300, 1200, 230)]
+        told = self.returns(PLANE, way, parameters={"RTL_AUTOLAND": 4}, code=1)
+        self.assertIn("the way back to the mission: ", str(told["returns"]["refused"]))
+
     def test_px4_returns_in_a_cone(self):
         way = [(22, 0, 0, 60), (16, 60, 0, 60), (16, 60, 60, 5), (16, 20, 0, 5)]
         told = self.returns(PX4_COPTER, way, code=0)
@@ -275,6 +339,11 @@ class Returns(PlanCase):
     def test_what_is_not_modelled_is_not_judged(self):
         for vehicle, way, parameters, words in [
                 (COPTER, self.beyond(), {"RTL_ALT_TYPE": 1}, "RTL_ALT_TYPE"),
+                (COPTER, self.beyond(), {"FS_THR_ENABLE": 4, "RTL_ALT_M": 260}, "FS_THR_ENABLE 4"),
+                (COPTER, self.beyond(), {"BATT2_FS_CRT_ACT": 1, "RTL_ALT_M": 260}, "BATT2_FS_CRT_ACT 1"),
+                (PLANE, self.beyond(False), {"FS_LONG_ACTN": 2, "RTL_ALTITUDE": 260}, "FS_LONG_ACTN 2"),
+                (COPTER, self.beyond() + [(21, 1900, 300, 0)] + self.AT_HOME[:2] + [(177, 6, 1)] + self.AT_HOME[2:],
+                 self.AUTO_RTL, "jumps"),
                 (PX4_COPTER, self.beyond(), {"RTL_TYPE": 2, "RTL_RETURN_ALT": 250}, "RTL_TYPE"),
                 (PX4_PLANE, [(22, 300, 0, 260)] + self.beyond(False) + [(21, 1900, 1200, 0)], {}, "landing"),
                 (PLANE, self.beyond(False) + [(189, 0, 0, 0), (21, 1900, 300, 0)], {"RTL_AUTOLAND": 2}, "landing"),

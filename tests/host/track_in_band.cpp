@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// track_in_band MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK [WIND]: which share
-// of a track that ArduPilot flew lies in the band that is predicted for the mission. TRACK has
-// lines "longitude,latitude,altitude,item" (degrees, metres above sea level), RUNWAY is the heading
-// of an aeroplane's take-off, WIND the strongest one in m/s. Prints a line of JSON: the lengths
-// flown and outside, of the whole track and of each item, and the place that is farthest outside.
+// track_in_band MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK [WIND [RADIUS]]:
+// which share of a track that ArduPilot flew lies in the band that is predicted for the mission.
+// TRACK has lines "longitude,latitude,altitude,item" (degrees, metres above sea level), RUNWAY is
+// the heading of an aeroplane's take-off, WIND the strongest one in m/s. With RADIUS (metres) the
+// track is that of a failsafe's return, from within so much of its first place, and "joins" tells
+// at which items it may join the mission. Prints a line of JSON: the lengths flown and outside, of
+// the whole track and of each item, and the place that is farthest outside.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +16,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/formats/mission_file.hpp"
-#include "host/autopilot/flown_mission.hpp"
+#include "host/autopilot/failsafe_return.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 
@@ -140,7 +142,7 @@ Json compare(const formats::MissionFile& plan, const FlownMission& flown, const 
         lengths->outside_m += found.outside_m > 0 ? length : 0;
         lengths->farthest_m = std::max(lengths->farthest_m, found.outside_m);
       }
-      if (found.outside_m > 0 && found.outside_m == all.farthest_m) {
+      if (found.part != nullptr && found.outside_m > 0 && found.outside_m == all.farthest_m) {
         const auto [lon, lat] = world.frame().to_lonlat(place.x(), place.y());
         worst = {{"outside_m", found.outside_m},
                  {"lonlat", {lon, lat}},
@@ -174,8 +176,9 @@ Json compare(const formats::MissionFile& plan, const FlownMission& flown, const 
 }
 
 int run(const std::vector<std::string>& words) {
-  if (words.size() != 6 && words.size() != 7) {
-    throw Error("expected MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK [WIND]");
+  if (words.size() < 6 || words.size() > 8) {
+    throw Error(
+        "expected MISSION copter|plane|vtol PARAMETERS|- RUNWAY|- TERRAIN|- TRACK [WIND [RADIUS]]");
   }
   const formats::MissionFile plan = formats::read_mission(words[0]);
   if (!plan.home || plan.commands.empty()) {
@@ -193,9 +196,34 @@ int run(const std::vector<std::string>& words) {
   }
   options.wind_mps = words.size() > 6 ? std::stod(words[6]) : 0;
   const World world = world_of(words[4], *plan.home);
-  const FlownMission flown =
-      fly_mission(plan, {formats::Firmware::ardupilot, airframe}, world, options);
-  std::cout << compare(plan, flown, world, read_track(words[5], world.frame())).dump() << "\n";
+  const formats::Autopilot autopilot{formats::Firmware::ardupilot, airframe};
+  const std::vector<Sample> track = read_track(words[5], world.frame());
+  if (words.size() == 8) {
+    const FailsafeReturns returns(plan, autopilot, world, options);
+    const double radius = std::stod(words[7]);
+    const Sample& begin = track.at(0);
+    std::size_t command = 0;
+    while (command + 1 < plan.commands.size() && plan.commands[command].item < begin.item) {
+      ++command;
+    }
+    FlownMission flown = returns.from(
+        command, {begin.at.head<2>(), radius, begin.at.z() - radius, begin.at.z() + radius});
+    // Until it has stopped or turned it is where the mission may be.
+    std::copy_if(returns.mission().parts.begin(), returns.mission().parts.end(),
+                 std::back_inserter(flown.parts),
+                 [&](const FlownPart& part) { return part.command == command; });
+    Json json = compare(plan, flown, world, track);
+    json["joins"] = Json::array();
+    for (const FlownPart& part : flown.parts) {
+      if (part.what == "the way back to the mission") {
+        json["joins"].push_back(plan.commands[part.command].item);
+      }
+    }
+    std::cout << json.dump() << "\n";
+    return 0;
+  }
+  const FlownMission flown = fly_mission(plan, autopilot, world, options);
+  std::cout << compare(plan, flown, world, track).dump() << "\n";
   return 0;
 }
 }  // namespace

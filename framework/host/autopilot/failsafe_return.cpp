@@ -18,6 +18,10 @@ FailsafeReturns::FailsafeReturns(const formats::MissionFile& plan, formats::Auto
 
 FailsafeReturns::~FailsafeReturns() = default;
 
+bool FailsafeReturns::may_return_from(const FlownPart& part) const {
+  return walker_->may_return_from(part);
+}
+
 FlownMission FailsafeReturns::from(std::size_t command, const Whereabouts& place) const {
   return walker_->return_from(command, place);
 }
@@ -52,13 +56,21 @@ FlownMission Walker::return_from(std::size_t n, const Whereabouts& place) {
     give_up(n, "a failsafe return in a mission that sets another home is not judged");
   } else {
     remark_return_parameters(n);
-    if (!autopilot_.is_copter()) {
-      be_anywhere(place);
-    } else {
-      hover_.emplace(flight_, place.at, place.low_m);
-      hover_->high = place.high_m;
+    TimeSpan end{kInfinity, 0};
+    for (const Failsafe failsafe : failsafes(n)) {
+      mission_.time = {};
+      if (!autopilot_.is_copter()) {
+        be_anywhere(place);
+      } else {
+        hover_.emplace(flight_, place.at, place.low_m);
+        hover_->high = place.high_m;
+      }
+      if (failsafe == Failsafe::returns || !join_mission(n, failsafe, place)) {
+        return_home(n);
+      }
+      end = {std::min(end.min_s, mission_.time.min_s), std::max(end.max_s, mission_.time.max_s)};
     }
-    return_home(n);
+    mission_.time = end;
     check_fences();
   }
   mission_.parameters = parameters_.used();

@@ -35,9 +35,9 @@ struct Glide {
 
 class Walker;
 
-/// The paths on which an autopilot returns when a failsafe ends a mission: to home or a rally
-/// point, as its parameters say. Copters and aeroplanes; what else a return may do is remarked as
-/// not judged.
+/// The paths on which an autopilot returns when a failsafe ends a mission: to home, a rally point,
+/// or ArduPilot's along the mission, as its parameters say. Copters and aeroplanes; what else a
+/// return may do is remarked as not judged.
 class FailsafeReturns {
  public:
   FailsafeReturns(const formats::MissionFile& plan, formats::Autopilot autopilot,
@@ -46,6 +46,8 @@ class FailsafeReturns {
 
   /// The mission as it is flown without a failsafe.
   const FlownMission& mission() const { return mission_; }
+  /// False of a part that a failsafe does not end.
+  bool may_return_from(const FlownPart& part) const;
   /// The return from anywhere in a place at which that command is carried out, whatever the heading
   /// there: its strips contain every path, its time is that of the return alone.
   FlownMission from(std::size_t command, const Whereabouts& place) const;

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/autopilot/failsafe_return.hpp"
@@ -115,6 +116,8 @@ class Hover {
   /// The same from anywhere in a place, and straight to another one.
   void return_from(std::size_t command, const Whereabouts& place, double low_m, double high_m,
                    const Eigen::Vector2d& to);
+  /// From anywhere in a place straight to an item of a mission, at which it is then.
+  void join(std::size_t command, const Whereabouts& place, const Destination& to);
   void go(std::size_t command, const char* what, const Destination& to);
   /// In an arc of `angle` (radians, positive clockwise) about no given centre.
   void arc(std::size_t command, const Destination& to, double angle);
@@ -206,10 +209,16 @@ class Wing {
               bool leaves_on_tangent);
   /// Is anywhere in a place, on any heading.
   void be_anywhere(const Whereabouts& place);
-  /// From there to another place, around which it circles, down to the least of heights. With
-  /// `circle_m` it climbs on a circle of that radius first.
-  void return_from(std::size_t command, const Whereabouts& place, const Destination& to,
-                   double circle_m, double circle_at_home_m, double least_there);
+  /// Contains every place at which it may be.
+  Whereabouts whereabouts() const;
+  /// From there to another place, around which it circles, down to the least of heights; returns
+  /// where. With `circle_m` it climbs on a circle of that radius first.
+  Whereabouts return_from(std::size_t command, const Whereabouts& place, const Destination& to,
+                          double circle_m, double circle_at_home_m, double least_there);
+  /// From anywhere in a place straight to an item of a mission: where it passes that.
+  Whereabouts join(std::size_t command, const Whereabouts& place, const Leg& leg);
+  /// Is somewhere about the item that it passes, on any heading.
+  void pass(const Destination& item, const Whereabouts& somewhere);
   /// As FailsafeReturns has it.
   Glide glide_in(const Whereabouts& place, double ratio, double lowest_m) const;
   /// Down to the ground on a slope, and along the ground.
@@ -237,6 +246,15 @@ class Wing {
     bool climbs = false;  ///< also when it is as low as may be
   };
 
+  /// Adds the ways from anywhere in a place to another one; returns between which heights they end,
+  /// and how long they take. To a circle there a greater height is sought at once, else along the
+  /// way. With `circle_m` it climbs on a circle of that radius first.
+  std::pair<Whereabouts, TimeSpan> add_ways(const Whereabouts& place, const Destination& to,
+                                            double circle_m, double circle_there_m);
+  /// On its first way on from where it has joined a mission: about there it may turn in any way.
+  std::optional<Whereabouts> leave_joined(const Destination& to);
+  /// Metres after which it is on its track, at the most.
+  double to_settle(const Whereabouts& joined) const;
   /// Adds the triangle within which the corner at the item before is cut.
   void cut_corner(const Leg& leg);
   void make_members(const std::function<Member(int, double)>& make);
@@ -246,9 +264,10 @@ class Wing {
   /// The path until a place is at most so much longer than its way, with that room to turn.
   static double late_m(const Whereabouts& place, double beside, double fast);
   /// From anywhere between two heights, where it has turned after so many metres, and its path is
-  /// at most `late_m` longer than its way.
+  /// at most `late_m` longer than its way. It climbs or sinks at once, or along so many metres.
   std::vector<Flight::Level> levels_of_return(double low, double high, const Destination& to,
-                                              double turned_m, double late_m) const;
+                                              double turned_m, double late_m,
+                                              double ramp_m = 0) const;
   /// Of ArduPilot's, from above.
   std::vector<Flight::Level> levels_on_line(double low, double top, const Destination& to,
                                             const Whereabouts& place, double beside,
@@ -300,7 +319,8 @@ class Wing {
 
   Flight& flight_;
   std::vector<Member> members_;
-  Destination from_;  ///< the previous item, from which the track leads
+  std::optional<Whereabouts> joined_;  ///< about the item at which it has joined the mission
+  Destination from_;                   ///< the previous item, from which the track leads
   bool has_track_ = false;
   bool does_arrive_ = true;
   bool sinks_ = false;                 ///< it was above the present item when it set out for it

@@ -27,7 +27,12 @@ FlownMission Walker::fly() {
   place_home();
   remark_parameters();
   if (check_upload(commands_, flight_)) {
-    walk();
+    if (const std::string other = parameters_.of_another(); !other.empty()) {
+      give_up(0, "the parameters are those of " + other + ", not of " + autopilot_.name() +
+                     ": give those of the vehicle that flies it");
+    }
+    walk(0);
+    rests_.clear();  // before it had all its speeds
     check_fences();
   }
   mission_.parameters = parameters_.used();
@@ -111,14 +116,9 @@ std::optional<Destination> Walker::next_destination(std::size_t n) const {
   return next ? std::optional(destination(*next)) : std::nullopt;
 }
 
-void Walker::walk() {
-  std::size_t n = 0;
+void Walker::walk(std::size_t n) {
   std::size_t jumps = 0;  // since the last command of another kind
   bool ends = false;
-  if (const std::string other = parameters_.of_another(); !other.empty()) {
-    give_up(n, "the parameters are those of " + other + ", not of " + autopilot_.name() +
-                   ": give those of the vehicle that flies it");
-  }
   for (int steps = 0; n < commands_.size() && !ends; ++steps) {
     if (steps == kMaxSteps) {
       flight_.remark(Weight::not_judged, "not_judged", n, "the flight has too many steps");
@@ -127,6 +127,10 @@ void Walker::walk() {
     if (!commands_.is_done(n)) {
       ++n;
       continue;
+    }
+    if (commands_.is_jump(n) && has_joined_) {
+      give_up(n, "how often a return that has joined the mission jumps is not judged");
+      return;
     }
     if (commands_.is_jump(n)) {
       fly_rounds(n);
@@ -218,6 +222,12 @@ void Walker::note_unflown(std::size_t n) {
 }
 
 bool Walker::goes_on_when_told(std::size_t n, const std::string& what) {
+  if (has_joined_) {
+    const bool is_copter = autopilot_.is_copter();  // an aeroplane's return may end on a circle
+    flight_.remark(is_copter ? Weight::fails : Weight::note, "never_ends", n,
+                   "a return " + what + ": it does not land");
+    return false;
+  }
   bool leads_on = !positions_after(n).empty();
   for (std::size_t i = n + 1; i < commands_.size(); ++i) {
     leads_on = leads_on || task_of(i) == Task::return_home;

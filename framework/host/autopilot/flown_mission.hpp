@@ -50,7 +50,8 @@ struct FlownPart {
   double until_s = 0;      ///< latest end of the last time that it is flown
   double held_s = 0;       ///< of its time, that it waits at its end
   double speed_mps = 0;    ///< the greatest that is sought along it; 0: none
-  bool is_return = false;  ///< to home or a rally point, where no failsafe changes it
+  bool is_return = false;  ///< to home or a rally point, or back along the mission
+  std::size_t known = 0;   ///< of returns: parts of the same number are the same; 0: of none
 };
 
 /// What is to be said of a command, besides where it flies.

@@ -138,6 +138,32 @@ void Hover::return_from(std::size_t command, const Whereabouts& place, double lo
   at = to;
 }
 
+void Hover::join(std::size_t command, const Whereabouts& place, const Destination& to) {
+  flight_.begin(command, "the way back to the mission").speed_mps = speed_mps[1];
+  const double along = (to.at - place.at).norm();
+  const double near = place.radius_m;
+  std::vector<Flight::Level> levels{
+      {0, std::min(place.low_m, to.low), std::max(place.high_m, to.high)}};
+  if (along > 2 * near + 1) {
+    // A way that begins as far away as may be sinks first, one that begins nearby climbs last.
+    const auto early = [&](double from, double end) {
+      return from + 2 * near / (along + near) * (end - from);
+    };
+    const double low = to.low < place.low_m ? early(place.low_m, to.low) : place.low_m;
+    const double high = to.high > place.high_m ? early(place.high_m, to.high) : place.high_m;
+    levels = {{-near, place.low_m, place.high_m}, {near, low, high}, {along, to.low, to.high}};
+  }
+  flight_.add_fan(place, 0, to.at, levels,
+                  flight_.autopilot().is_px4() ? 1 : std::min(reach(), 10.0));
+  const double vertical = std::max(std::max(to.high - place.low_m, 0.0) / climb_mps[0],
+                                   std::max(place.high_m - to.low, 0.0) / sink_mps[0]);
+  flight_.take({std::max(along - near, 0.0) / speed_mps[1] * 0.95,
+                std::max((along + near) / speed_mps[0], vertical) + 6.5});
+  at = to.at;
+  low = to.low;
+  high = to.high;
+}
+
 void Hover::cut_corner(const Eigen::Vector2d& to, double z) {
   const double radius = reach();
   if (!previous_ || radius <= kCornerSpacing / 2) {

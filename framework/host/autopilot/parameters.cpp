@@ -42,6 +42,10 @@ const Row kRows[] = {
     {"WP_JERK", {1, kNone, kNone, kNone}, "WPNAV_JERK", 1},
     {"ATC_INPUT_TC", {0.15, kNone, kNone, kNone}},
     {"RTL_ALT_M", {15, kNone, kNone, kNone}, "RTL_ALT", kCm},
+    {"FS_THR_ENABLE", {1, kNone, kNone, kNone}},
+    {"FS_GCS_ENABLE", {0, kNone, kNone, kNone}},
+    {"FS_LONG_ACTN", {kNone, 0, kNone, kNone}},
+    {"FS_SHORT_ACTN", {kNone, 0, kNone, kNone}},
     {"RTL_CLIMB_MIN_M", {0, kNone, kNone, kNone}, "RTL_CLIMB_MIN", kCm},
     {"RTL_CONE_SLOPE", {3, kNone, kNone, kNone}},
     {"RTL_ALT_TYPE", {0, kNone, kNone, kNone}},
@@ -116,14 +120,15 @@ const Row kRows[] = {
 
 /// Those that may be 0 or less; flight with such a value of the others is none.
 constexpr std::string_view kMayBeZero[] = {
-    "RTL_ALT_M",        "RTL_CLIMB_MIN_M", "RTL_CONE_SLOPE",   "RTL_ALT_TYPE",    "RALLY_LIMIT_KM",
-    "RALLY_INCL_HOME",  "FENCE_ENABLE",    "FENCE_AUTOENABLE", "FENCE_TYPE",      "FENCE_ALT_MAX",
-    "FENCE_ALT_MIN",    "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",
-    "ALT_SLOPE_MIN",    "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD",
-    "TERRAIN_OFS_MAX",  "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",
-    "RTL_DESCEND_ALT",  "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",
-    "MIS_OPTIONS",      "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",
-    "LAND_SPD_HIGH_MS", "MIS_TKO_LAND_REQ"};
+    "FS_SHORT_ACTN",   "FS_THR_ENABLE",    "FS_GCS_ENABLE",   "FS_LONG_ACTN",    "RTL_ALT_M",
+    "RTL_CLIMB_MIN_M", "RTL_CONE_SLOPE",   "RTL_ALT_TYPE",    "RALLY_LIMIT_KM",  "RALLY_INCL_HOME",
+    "FENCE_ENABLE",    "FENCE_AUTOENABLE", "FENCE_TYPE",      "FENCE_ALT_MAX",   "FENCE_ALT_MIN",
+    "FENCE_RADIUS",    "GF_MAX_VER_DIST",  "GF_MAX_HOR_DIST", "WP_LOITER_RAD",   "ALT_SLOPE_MIN",
+    "RTL_ALTITUDE",    "RTL_RADIUS",       "RTL_AUTOLAND",    "TERRAIN_LOOKAHD", "TERRAIN_OFS_MAX",
+    "Q_OPTIONS",       "Q_RTL_MODE",       "NAV_LOITER_RAD",  "RTL_RETURN_ALT",  "RTL_DESCEND_ALT",
+    "RTL_TYPE",        "RTL_CONE_ANG",     "RTL_MIN_DIST",    "FENCE_MARGIN",    "MIS_OPTIONS",
+    "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",   "LAND_SPD_HIGH_MS",
+    "MIS_TKO_LAND_REQ"};
 
 void expect_possible(const Row& row, const ParameterValue& given) {
   const double value = given.value;

@@ -17,7 +17,9 @@ void Walker::finish() {
   flight_.repeats = 0;
   const std::size_t last = commands_.size() - 1;
   if (autopilot_.is_copter()) {
-    flight_.remark(Weight::note, "end", last, "the mission ends in the air: it hovers there");
+    flight_.remark(has_joined_ ? Weight::fails : Weight::note, "end", last,
+                   has_joined_ ? "a return along the mission ends in the air: it hovers there"
+                               : "the mission ends in the air: it hovers there");
   } else if (is_winged_ && is_px4()) {
     Destination there;
     there.at = wing_->mean_place();
@@ -34,6 +36,10 @@ void Walker::finish() {
 void Walker::return_home(std::size_t n) {
   flight_.repeats = 0;
   if (!has_flown_) {
+    return;
+  }
+  if (const auto joined = return_by_mission(); joined && parameter("RTL_AUTOLAND") != 1) {
+    join_mission(n, *joined, failsafe_ ? *failsafe_ : wing_->whereabouts());
     return;
   }
   if (!plan_.home && !has_new_home_) {
@@ -203,8 +209,9 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
                command.number == kReturnPathStart;
       });
   const double type = is_px4() ? parameter("RTL_TYPE") : 0;
+  const bool is_quadplane = !is_px4() && autopilot_.airframe == Airframe::vtol;
   const bool goes_to_landing =
-      has_landing && (is_px4() ? type != 0 : parameter("RTL_AUTOLAND") != 0);
+      has_landing && (is_px4() ? type != 0 : is_quadplane && parameter("RTL_AUTOLAND") != 0);
   if (type > 1) {
     give_up(n, "a return along the mission (RTL_TYPE) is not judged");
     return;
@@ -228,10 +235,19 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   const double own = parameter(is_px4() ? "NAV_LOITER_RAD" : "WP_LOITER_RAD");
   const double given = is_px4() ? 0 : parameter("RTL_RADIUS");
   const double radius = std::abs(given != 0 ? given : own);
-  if (failsafe_) {
+  const std::optional<Failsafe> joined = return_by_mission();
+  if (failsafe_ || joined) {
+    constexpr double kNearHeight = 10;  // metres within which its height is reached
     const double minimum =
         is_px4() ? std::min(home_z_, refuge.z) + parameter("RTL_DESCEND_ALT") : leg.to.low;
-    wing_->return_from(n, *failsafe_, leg.to, is_px4() ? std::abs(own) : 0, radius, minimum);
+    const Whereabouts from = failsafe_ ? *failsafe_ : wing_->whereabouts();
+    Whereabouts circle =
+        wing_->return_from(n, from, leg.to, is_px4() ? std::abs(own) : 0, radius, minimum);
+    circle.low_m = leg.to.low - kNearHeight;
+    circle.high_m = leg.to.high + kNearHeight;
+    if (joined) {
+      join_mission(n, *joined, circle);
+    }
     return;
   }
   if (is_px4() && wing_->low() < leg.to.low) {

@@ -29,6 +29,7 @@ class Walker {
   FlownMission fly();
   /// As FailsafeReturns has it, after the mission was flown.
   FlownMission return_from(std::size_t n, const Whereabouts& place);
+  bool may_return_from(const FlownPart& part);
   Glide glide_in(const Whereabouts& place, double ratio, double lowest_m);
   FlownMission glide(std::size_t n, const Whereabouts& place, const Glide& glide, const Vec3& site);
 
@@ -66,7 +67,7 @@ class Walker {
 
   // The walk.
 
-  void walk();
+  void walk(std::size_t n);
 
   /// Those of the commands after that one that lead to a position.
   std::vector<std::size_t> positions_after(std::size_t n) const;
@@ -168,6 +169,36 @@ class Walker {
   void return_hover(std::size_t n, const Refuge& refuge);
   void return_wing(std::size_t n, const Refuge& refuge);
 
+  // Returns of ArduPilot that join the mission.
+
+  enum class Failsafe { returns, joins_return_path, joins_landing };
+  /// What the parameters have failsafes do; remarks what is not modelled.
+  std::vector<Failsafe> failsafes(std::size_t n);
+  /// That of an aeroplane's return.
+  std::optional<Failsafe> return_by_mission() const;
+  /// A place of the mission, and the leg before it, by whose distance a return chooses it.
+  struct Entry {
+    std::size_t command;
+    std::optional<std::size_t> before;
+  };
+  /// Behind the last command that belongs to a return path.
+  std::size_t end_of_path(std::size_t start) const;
+  /// Those of return paths (188), or of landing sequences (189).
+  std::vector<Entry> entries(Failsafe kind) const;
+  /// The commands from which on a return may fly the mission from anywhere in a place; none if it
+  /// does not join it. What cannot be told of them is remarked.
+  std::vector<std::size_t> joins(std::size_t n, Failsafe kind, const Whereabouts& place);
+  /// True if a failsafe's return goes on with the mission, for that is on its way home there.
+  bool is_on_way_home(std::size_t n) const;
+  /// Flies so; false if there is nothing to join.
+  bool join_mission(std::size_t n, Failsafe kind, const Whereabouts& place);
+  void join_at(std::size_t n, std::size_t command, const Whereabouts& place);
+  /// What is flown from a command on, after its first item is reached at heights.
+  const FlownMission& rest_from(std::size_t n, std::size_t command, std::size_t item,
+                                const Whereabouts& arrival);
+  /// Of which a failsafe takes any that the mission has.
+  void take_any_speed();
+
   const formats::MissionFile& plan_;
   formats::Autopilot autopilot_;
   const World& world_;
@@ -218,5 +249,8 @@ class Walker {
   std::vector<std::size_t> orders_;  ///< since the last item that is flown
   int homes_set_ = 0;
   std::optional<Whereabouts> failsafe_;  ///< where it returns from, in place of the mission
+  bool has_joined_ = false;              ///< the mission, on its return
+  std::map<std::array<double, 3>, FlownMission> rests_;  ///< by command and heights
+  std::size_t known_parts_ = 0;
 };
 }  // namespace altiplan::host

@@ -4,6 +4,7 @@
 // flown one by one with the autopilot's law of guidance (Park, Deyst and How 2004, equation 1).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/autopilot/flight.hpp"
 
@@ -450,6 +451,22 @@ void Wing::fill_between(const std::vector<std::vector<Passed>>& passed) {
 
 void Wing::go(std::size_t command, const char* what, const Leg& leg) {
   flight_.begin(command, what).speed_mps = speed_mps[1];
+  TimeSpan time{kInfinity, 0};
+  std::optional<Whereabouts> still_joined;
+  if (const auto joined = leave_joined(leg.to)) {
+    const auto [arrival, way_time] = add_ways(*joined, leg.to, 0, 0);
+    time = way_time;
+    const double v = true_speed(1, std::max(joined->high_m, leg.to.high));
+    if ((leg.to.at - joined->at).norm() < to_settle(*joined)) {
+      still_joined = arrival;
+      still_joined->radius_m = room_to_turn(v) + std::max(turn_distance(v, leg), leg.pass_by_m);
+    }
+    if (leg.to.above_ground) {
+      flight_.remark(Remark::Weight::not_judged, "not_judged", command,
+                     "the first way of a return along the mission to a height above the ground is "
+                     "not judged");
+    }
+  }
   does_arrive_ = true;
   sinks_ = low() > leg.to.high && from_.low >= leg.to.high;
   if (has_track_) {
@@ -462,7 +479,6 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
       flight_.add_leg(a, from_.high, leg.to.point(), leg.to.high, kBesideTrack);
     }
   }
-  TimeSpan time{kInfinity, 0};
   std::vector<std::vector<Passed>> passed(members_.size());
   for (std::size_t n = 0; n < members_.size(); ++n) {
     const double seconds = fly(members_[n], leg, passed[n]);
@@ -494,6 +510,7 @@ void Wing::go(std::size_t command, const char* what, const Leg& leg) {
   circle_until_high(command, leg);
   from_ = leg.to;
   has_track_ = true;
+  joined_ = still_joined;
 }
 
 std::array<double, 2> Wing::lags_on_circle(const Destination& centre, double radius,
@@ -545,6 +562,7 @@ std::array<double, 2> Wing::heights_at(const Destination& to, const Eigen::Vecto
 void Wing::circle(std::size_t command, const char* what, const Destination& centre, double radius,
                   bool clockwise, const Stay& stay, const std::optional<Destination>& next,
                   bool leaves_on_tangent) {
+  joined_.reset();
   flight_.begin(command, what).speed_mps = speed_mps[1];
   const double z = heights_at(centre, centre.at)[0];
   double below = 0;  // the height that is sought
@@ -631,13 +649,15 @@ double Wing::late_m(const Whereabouts& place, double beside, double fast) {
 }
 
 std::vector<Flight::Level> Wing::levels_of_return(double low, double high, const Destination& to,
-                                                  double turned_m, double late_m) const {
+                                                  double turned_m, double late_m,
+                                                  double ramp_m) const {
   const double fast = true_speed(1, std::max(high, to.high));
   const double slow = true_speed(0, std::min(low, to.low));
   std::vector<Flight::Level> levels;
   const double top = std::max(high, to.high);
-  if (low < to.low) {  // It climbs at once: at a constant rate, then ever slower.
-    const double rate = kSlowClimb * climb_mps_;
+  if (low < to.low) {  // It climbs at a constant rate, then ever slower.
+    const double along_ramp = ramp_m > 0 ? (to.low - low) / ramp_m * fast : kInfinity;
+    const double rate = std::min(kSlowClimb * climb_mps_, along_ramp);
     const double tau = lag_s_ / (kSlowClimb * kSlowClimb);
     const double last = std::min(rate * tau, to.low - low);
     const double level_off = turned_m + (to.low - last - low) / rate * fast;
@@ -646,6 +666,9 @@ std::vector<Flight::Level> Wing::levels_of_return(double low, double high, const
       levels.push_back({level_off + taus * tau * fast, to.low - last * std::exp(-taus), top});
     }
     return levels;
+  }
+  if (ramp_m > 0 && low - to.low >= slope_min_m_) {
+    return {{-turned_m, low, top}, {ramp_m, to.low, top}};
   }
   // It may sink at once.
   const double rate = kQuick * sink_mps_;
@@ -669,13 +692,22 @@ std::vector<Flight::Level> Wing::levels_on_line(double low, double top, const De
   return {{begin, low - lag_m, top}, {end, there - lag_m, top}, {end, to.low, top}};
 }
 
-void Wing::return_from(std::size_t command, const Whereabouts& place, const Destination& to,
-                       double circle_m, double circle_at_home_m, double least_there) {
+Whereabouts Wing::whereabouts() const {
+  Whereabouts all{mean_place(), 0, low(), high()};
+  for (const Member& member : members_) {
+    all.radius_m = std::max(all.radius_m, (member.at - all.at).norm());
+  }
+  return all;
+}
+
+std::pair<Whereabouts, TimeSpan> Wing::add_ways(const Whereabouts& place, const Destination& to,
+                                                double circle_m, double circle_there_m) {
   constexpr double kLevelled = 10;  // metres: PX4 leaves its circle so far from its height
-  const double bottom = low();
-  const double top = high();
+  const double bottom = place.low_m;
+  const double top = place.high_m;
   const double fast = true_speed(1, std::max(top, to.high));
   const double slow = true_speed(0, std::min(bottom, to.low));
+  const double length = (to.at - place.at).norm();
   double beside = room_to_turn(fast);
   const bool circles = circle_m > 0 && bottom < to.low;
   if (circles) {
@@ -690,19 +722,17 @@ void Wing::return_from(std::size_t command, const Whereabouts& place, const Dest
               {turned_m, to.low - kLevelled, std::max(top, to.high)},
               {turned_m + level_m, to.low, std::max(top, to.high)}};
   } else {
-    levels = levels_of_return(bottom, top, to, turned_m, late_m);
+    levels = levels_of_return(bottom, top, to, turned_m, late_m, circle_there_m > 0 ? 0 : length);
   }
-  const double length = (to.at - place.at).norm();
-  const double circles_m = widest_radius(circle_at_home_m, to.high);
-  const bool is_near = length < 3 * turned_m;
-  if (slope_min_m_ > 0 && bottom - to.high >= slope_min_m_ && length > 3 * turned_m + circles_m) {
-    levels = levels_on_line(bottom, top, to, place, beside, circles_m);
+  if (circle_there_m > 0 && slope_min_m_ > 0 && bottom - to.high >= slope_min_m_ &&
+      length > 3 * turned_m + circle_there_m) {
+    levels = levels_on_line(bottom, top, to, place, beside, circle_there_m);
   }
-  flight_.begin(command, "the way home");
   flight_.add_fan(place, beside, to.at, levels, kBesideTrack);
   const double climb_s =
       circles ? (to.high - bottom) / (kSlow * climb_mps_) + 2 * kPi * beside / slow : 0;
-  flight_.take({std::max(length - place.radius_m, 0.0) / fast, (length + late_m) / slow + climb_s});
+  const TimeSpan time{std::max(length - place.radius_m, 0.0) / fast,
+                      (length + late_m) / slow + climb_s};
   // As it arrives: lower while it has climbed too little, higher while it has sunk too little.
   double last_low = to.low;
   for (const Flight::Level& level : levels) {
@@ -710,12 +740,53 @@ void Wing::return_from(std::size_t command, const Whereabouts& place, const Dest
       last_low = std::min(last_low, level.low);
     }
   }
+  const bool is_near = length < 3 * turned_m;
   const double sunk = is_near ? 0 : std::max(0.0, kSlow * sink_mps_ / fast * (length - late_m));
   const double lag_m = sink_mps_ * lag_s_ / (kSlow * kSlow);
   const double last_high = std::min(std::max(top, to.high), std::max(to.high, top - sunk) + lag_m);
+  return {{to.at, 0, is_near ? std::min(bottom, last_low) : last_low, last_high}, time};
+}
+
+Whereabouts Wing::return_from(std::size_t command, const Whereabouts& place, const Destination& to,
+                              double circle_m, double circle_at_home_m, double least_there) {
+  flight_.begin(command, "the way home");
+  const double circles_m = widest_radius(circle_at_home_m, to.high);
+  auto [home, time] = add_ways(place, to, circle_m, circles_m);
+  flight_.take(time);
+  home.radius_m = circles_m;
   flight_.begin(command, "the circle at home");
-  flight_.add_tower({to.at, circles_m, 0, 0}, std::min(is_near ? bottom : last_low, least_there),
-                    last_high, kBesideTrack);
+  flight_.add_tower(home, std::min(home.low_m, least_there), home.high_m, kBesideTrack);
+  return home;
+}
+
+Whereabouts Wing::join(std::size_t command, const Whereabouts& place, const Leg& leg) {
+  flight_.begin(command, "the way back to the mission").speed_mps = speed_mps[1];
+  auto [item, time] = add_ways(place, leg.to, 0, 0);
+  flight_.take(time);
+  item.radius_m = std::max(turn_distance(true_speed(1, leg.to.low), leg), leg.pass_by_m);
+  return item;
+}
+
+void Wing::pass(const Destination& item, const Whereabouts& somewhere) {
+  be_anywhere(somewhere);
+  from_ = item;
+  has_track_ = true;
+  joined_ = somewhere;
+}
+
+double Wing::to_settle(const Whereabouts& joined) const {
+  const double v = true_speed(1, joined.high_m);
+  return joined.radius_m + 2 * room_to_turn(v) + 3 * l1_s_ * v;
+}
+
+std::optional<Whereabouts> Wing::leave_joined(const Destination& to) {
+  if (!joined_ || (to.at - joined_->at).norm() < 1) {
+    return std::nullopt;
+  }
+  for (Member& member : members_) {
+    member.heading = bearing_of(to.at - member.at);
+  }
+  return std::exchange(joined_, std::nullopt);
 }
 
 // In a turn it sinks n² times as fast at most (n its load: the drag of its lift grows with n², the

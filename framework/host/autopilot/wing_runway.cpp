@@ -37,6 +37,7 @@ Wing::Aim Wing::lowest_aim(double sinks_m, double length, double z) const {
 void Wing::land(std::size_t command, const Destination& to) {
   FlownPart& part = flight_.begin(command, "the landing");
   part.ground = FlownPart::Ground::touched_along;
+  const std::optional<Whereabouts> joined = leave_joined(to);
   const Eigen::Vector2d begin = from_.at;
   const double begin_low = low();
   const double begin_high = high();
@@ -87,6 +88,20 @@ void Wing::land(std::size_t command, const Destination& to) {
   const Vec3 lowest(aimed.x(), aimed.y(), std::min(touch.z() + aim.height_m, drawn));
   flight_.add_strip({begin.x(), begin.y(), begin_low}, begin_high, lowest, drawn, kBesidePath);
   flight_.add_strip(lowest, drawn, touch, touch.z(), kBesidePath);
+  if (joined && length < to_settle(*joined)) {
+    flight_.remark(Remark::Weight::not_judged, "not_judged", command,
+                   "a landing that begins within " + with_decimals(to_settle(*joined), 0) +
+                       " m of its point where a return joins the mission is not judged");
+  }
+  if (joined) {
+    const double aimed_m = (aimed - begin).norm();
+    flight_.add_fan(*joined, room_to_turn(fast), to.at,
+                    {{0, begin_low, begin_high},
+                     {aimed_m, lowest.z(), std::max(begin_high, drawn)},
+                     {length, touch.z(), touch.z()}},
+                    kBesidePath);
+    flight_.take({0, kPi * room_to_turn(fast) / true_speed(0, touch.z())});
+  }
   flight_.take({length / (speed_mps[1] + flight_.wind_mps),
                 length / std::max(speed_mps[0] - flight_.wind_mps, 1.0) * 1.5 + 30});
   roll_out(command, touch, (to.at - begin).normalized());

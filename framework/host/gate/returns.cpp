@@ -14,10 +14,11 @@
 namespace altiplan::host {
 namespace {
 
-constexpr double kFinest[] = {8, 16};  // metres: length, of a copter's and of an aeroplane's
-constexpr std::size_t kSampled = 40;   // places of a stretch, of which the worst is told
-constexpr std::size_t kPlaces = 9;     // of a stretch that are kept
-constexpr double kJoins = 3;           // seconds between refused places that are one stretch
+constexpr double kFinest[] = {8, 16};    // metres: length, of a copter's and of an aeroplane's
+constexpr std::size_t kSampled = 40;     // places of a stretch, of which the worst is told
+constexpr std::size_t kPlaces = 9;       // of a stretch that are kept
+constexpr double kNear = 3;              // seconds between refused places that are one stretch
+constexpr const char* kJoins = "joins";  // of remarks on where a return joins the mission
 
 class ReturnJudge {
  public:
@@ -47,14 +48,15 @@ class ReturnJudge {
     double last_s = 0;
     for (const FlownPlaces& places : flown_places_of(mission, plan_, world_.frame())) {
       const FlownPart& part = places.part();
-      const bool lands_on_wings = part.ground == FlownPart::Ground::touched_along;
-      if (!part.is_return && !lands_on_wings) {
+      const bool may_return = returns_.may_return_from(part);
+      const bool is_on_runway = part.ground == FlownPart::Ground::touched_along;
+      if (may_return && !is_on_runway) {
         places_ = &places;
         places.judge(
             finest_, [&](const Whereabouts& place) { return is_valid(place); },
             [&](const Whereabouts& place) { refuse(place); });
         last_s = places.end_s();
-      } else if (!part.is_return && lands_on_wings) {
+      } else if (may_return && is_on_runway) {
         add_unjudged(name_of_command(plan_.commands[part.command]) +
                      ": a return from an aeroplane's take-off or landing");
       }
@@ -95,37 +97,64 @@ class ReturnJudge {
     return battery_ && !(needed_wh <= battery_->usable_wh());
   }
 
+  /// Where it may join the mission in ways of which one is not judged, it is refused for another.
   void refuse(const Whereabouts& place) {
     const std::size_t command = places_->part().command;
+    const FlownMission home = returns_.from(command, place);
+    const bool is_unjudged = note_unjudged(home);
+    if (is_unjudged && !is_refused(place, home)) {
+      return;
+    }
     const auto [from_s, to_s] = places_->times_of(place, 2 * place.radius_m);
-    refused_.push_back(
-        {from_s, to_s, command, place, needed_wh(place, returns_.from(command, place))});
+    refused_.push_back({from_s, to_s, command, place, needed_wh(place, home)});
   }
 
-  /// True as well where the return is not judged, which is noted.
+  bool is_refused(const Whereabouts& place, const FlownMission& home) {
+    return is_too_much(needed_wh(place, home)) ||
+           std::any_of(
+               home.remarks.begin(), home.remarks.end(),
+               [](const Remark& remark) { return remark.weight == Remark::Weight::fails; }) ||
+           !std::all_of(home.parts.begin(), home.parts.end(),
+                        [&](const FlownPart& part) { return is_valid(part); });
+  }
+
+  bool note_unjudged(const FlownMission& home) {
+    bool is_unjudged = false;
+    for (const Remark& remark : home.remarks) {
+      if (remark.weight == Remark::Weight::not_judged) {
+        is_unjudged = true;
+        add_unjudged("a return: " + remark.message);
+      }
+    }
+    return is_unjudged;
+  }
+
+  /// True as well where the return is not judged, which is noted; false of a place that is so wide
+  /// that it may join the mission in ways that are not judged.
   bool is_valid(const Whereabouts& place) {
     FlownMission home = returns_.from(places_->part().command, place);
     const double begun_s = std::max(places_->part().time.max_s, places_->part().until_s);
     for (const FlownPart& part : home.parts) {
       end_s_ = std::max(end_s_, std::isfinite(part.time.max_s) ? begun_s + part.time.max_s : 0);
     }
-    parameters_ = std::move(home.parameters);  // with those of all before it
-    bool is_refused = is_too_much(needed_wh(place, home));
-    bool is_unjudged = false;
-    for (const Remark& remark : home.remarks) {
-      is_refused = is_refused || remark.weight == Remark::Weight::fails;
-      if (remark.weight == Remark::Weight::not_judged) {
-        is_unjudged = true;
-        add_unjudged("a return: " + remark.message);
-      }
+    parameters_ = home.parameters;  // with those of all before it
+    if (std::any_of(home.remarks.begin(), home.remarks.end(), [](const Remark& remark) {
+          return remark.weight == Remark::Weight::not_judged && remark.rule == kJoins;
+        })) {
+      return false;
     }
-    return is_unjudged ||
-           (!is_refused && std::all_of(home.parts.begin(), home.parts.end(),
-                                       [&](const FlownPart& part) { return is_valid(part); }));
+    return note_unjudged(home) || !is_refused(place, home);
   }
 
   /// What is flown at the end is the same for many.
   bool is_valid(const FlownPart& part) {
+    if (part.known > 0) {
+      const auto [known, is_new] = known_parts_.try_emplace(part.known, false);
+      if (is_new) {
+        known->second = judge_.is_valid(part);
+      }
+      return known->second;
+    }
     if (part.strips.empty() ||
         (part.what != "the circle at home" && part.what != "the landing at home")) {
       return judge_.is_valid(part);
@@ -222,7 +251,7 @@ class ReturnJudge {
     for (std::size_t n = 0; n < refused_.size();) {
       const std::size_t first = n;
       const Refused* last = &refused_[n];
-      for (; n < refused_.size() && refused_[n].from_s <= last->to_s + kJoins; ++n) {
+      for (; n < refused_.size() && refused_[n].from_s <= last->to_s + kNear; ++n) {
         last = refused_[n].to_s > last->to_s ? &refused_[n] : last;
       }
       const auto [worst, gap] = worst_of(std::span(refused_).subspan(first, n - first));
@@ -299,6 +328,7 @@ class ReturnJudge {
   std::vector<Refused> refused_;
   std::vector<Parameters::Used> parameters_;
   std::map<std::array<double, 7>, bool> known_;
+  std::map<std::size_t, bool> known_parts_;
   double end_s_ = 0;
 };
 
