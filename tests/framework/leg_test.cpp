@@ -144,7 +144,7 @@ TEST(Wind, GroundSpeedIsThatOfTheWindTriangle) {
   EXPECT_FALSE(ground_speed({-1, 0, 0}, 20, {20, 0, 0}));
   const Wind wind{{{0, {5, 0, 0}}, {100, {10, 0, 0}}}};
   EXPECT_NEAR(flight_time({0, 0, 50}, {1000, 0, 150}, 20, wind), 500 / 25.0 + 500 / 30.0, 1e-9);
-  EXPECT_EQ(wind.at(-1), Vec3(0, 0, 0));
+  EXPECT_EQ(wind.at({0, 0, -1}), Vec3(0, 0, 0));
 }
 }  // namespace
 }  // namespace altiplan::leg_test

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "altiplan/random.hpp"
 #include "study/statistics/statistics.hpp"
 
 namespace altiplan::host::rank_tests_test {

@@ -196,7 +196,7 @@ TEST(WingGuidance, KeepsBankAndRollRateWithinTheirLimits) {
   const FlightSetup all = setup({{0, 0, 500}, {3000, 0, 500}}, {5, 12, 0});
   WingGuidance guidance(all.request);
   guidance.take_over(all.request.start, {1, 0, 0});
-  State state{0, {0, 0, 500}, guidance.velocity(500, 0)};
+  State state{0, {0, 0, 500}, guidance.velocity({0, 0, 500}, 0)};
   RandomStream random;
   Vec3 reference(0, 0, 0);
   double bank = 0;

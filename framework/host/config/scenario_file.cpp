@@ -171,8 +171,21 @@ void WindEntry::describe(Fields& f) {
       .doc("direction from which the wind blows, clockwise from north");
   f("speed_mps", speed_mps).unit("m/s").range(0, 100).doc("wind speed");
   f("layers", layers).doc("alternatively: wind by layers of height, from the lowest");
+  f("grid", grid)
+      .doc(
+          "alternatively: wind by cells, at all heights, of a GRIB file or GeoTIFF: metres a "
+          "second "
+          "toward east and north");
+  f("bands", bands)
+      .at_least(1)
+      .doc(
+          "numbers of the file's bands toward east and north; default: those that GRIB names so, "
+          "or the only two");
+  f.check(int(from_deg.has_value()) + int(!layers.empty()) + int(!grid.text.empty()) <= 1,
+          "expected from_deg and speed_mps, or layers, or grid");
+  f.check(bands.empty() || (bands.size() == 2 && !grid.text.empty()),
+          "expected bands with grid, as two numbers");
   f.check(from_deg.has_value() == speed_mps.has_value(), "expected from_deg with speed_mps");
-  f.check(!from_deg || layers.empty(), "expected from_deg and speed_mps, or layers, not both");
   for (std::size_t i = 1; i < layers.size(); ++i) {
     f.check(layers[i - 1].above_m < layers[i].above_m,
             "expected layers in ascending order of above_m");

@@ -129,12 +129,14 @@ struct WindLayerEntry {
   void describe(Fields& f);
 };
 
-/// `{from_deg, speed_mps}` at every height, or `{layers: […]}`.
+/// `{from_deg, speed_mps}` at every height, or `{layers: […]}`, or `{grid: FILE}`.
 struct WindEntry {
   std::optional<double> from_deg;
   std::optional<double> speed_mps;
   std::vector<WindLayerEntry> layers;
-  bool blows() const { return speed_mps.value_or(0) > 0 || !layers.empty(); }
+  Path grid;
+  std::vector<int> bands;  ///< east, north
+  bool blows() const { return speed_mps.value_or(0) > 0 || !layers.empty() || !grid.text.empty(); }
   void describe(Fields& f);
 };
 

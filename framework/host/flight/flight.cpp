@@ -22,7 +22,7 @@ State first_state(const FlightSetup& setup) {
   if (start.loiter) {
     const Vec3& first = setup.route.front();
     const Vec3 course = start.loiter->course(start.position, first);
-    const auto heading = setup.request.heading_on(course, first.z());
+    const auto heading = setup.request.heading_on(course, first);
     start.velocity = heading ? setup.request.ground_velocity({first, *heading}) : course;
     start.position = first;
     start.loiter.reset();
@@ -112,13 +112,13 @@ void Flight::release() { vehicle_->release(); }
 
 void Flight::take_off() {
   const double airspeed = request_.vehicle.wing ? request_.vehicle.wing->airspeed_mps : kInfinity;
-  for (const double z : route_.path.heights_across(request_.wind)) {
-    if (const double wind = request_.wind.at(z).norm(); wind >= airspeed) {
+  for (const Vec3& place : route_.path.places_across(request_.wind)) {
+    if (const double wind = request_.wind.at(place).norm(); wind >= airspeed) {
       char message[160];
       std::snprintf(message, sizeof message,
                     "the wind of %g m/s at a height of %.0f m is not below the airspeed of %g m/s: "
                     "the aeroplane cannot hold its course there",
-                    wind, z, airspeed);
+                    wind, place.z(), airspeed);
       end_flight(RunStatus::not_reached, Reason::none, message);
       return;
     }

@@ -154,17 +154,20 @@ class FlightPath {
   }
   /// Direction of the last leg with a heading, of horizontal length 1.
   const Vec3& end_direction() const { return end_direction_; }
-  /// Heights of the path, one for each layer of the wind that it crosses.
-  std::vector<double> heights_across(const Wind& wind) const {
-    const auto [low, high] = std::minmax_element(
-        points_.begin(), points_.end(), [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
-    std::vector<double> heights{low->z(), high->z()};
-    for (const Wind::Layer& layer : wind.layers) {
-      if (layer.above_m > low->z() && layer.above_m < high->z()) {
-        heights.push_back(layer.above_m);
+  /// The points of the path, and one between each two borders of the wind that it crosses.
+  Polyline places_across(const Wind& wind) const {
+    Polyline places{points_.front()};
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+      double begin = 0;
+      std::vector<double> ends = wind.crossings(points_[i - 1], points_[i]);
+      ends.push_back(1);
+      for (const double end : ends) {
+        places.push_back(points_[i - 1] + (begin + end) / 2 * (points_[i] - points_[i - 1]));
+        begin = end;
       }
+      places.push_back(points_[i]);
     }
-    return heights;
+    return places;
   }
 
   /// Goes from p straight to position s, then along the path.

@@ -27,14 +27,14 @@ WingGuidance::WingGuidance(const Request& request)
 }
 
 void WingGuidance::take_over(const State& state, const Vec3& course, double curvature) {
-  const Vec3 wind = wind_.at(state.position.z());
+  const Vec3 wind = wind_.at(state.position);
   Vec3 air = state.velocity - wind;
   if (!has_heading(state.velocity)) {
     const double speed = ground_speed(course, wing_.airspeed_mps, wind).value_or(0);
     air = speed * Vec3(course.x(), course.y(), 0).normalized() - wind;
   }
   heading_ = std::atan2(air.y(), air.x());
-  const Vec3 over_ground = velocity(state.position.z(), 0);
+  const Vec3 over_ground = velocity(state.position, 0);
   bank_ = bank_for(curvature * over_ground.squaredNorm(), over_ground);
 }
 
@@ -43,8 +43,8 @@ double WingGuidance::lookahead(const Vec3& velocity) const {
   return std::min(tau * velocity.head<2>().norm(), kRadiusShare * radius_);
 }
 
-Vec3 WingGuidance::velocity(double z, double climb_rate) const {
-  return wing_.airspeed_mps * unit_heading(heading_) + wind_.at(z) + Vec3(0, 0, climb_rate);
+Vec3 WingGuidance::velocity(const Vec3& at, double climb_rate) const {
+  return wing_.airspeed_mps * unit_heading(heading_) + wind_.at(at) + Vec3(0, 0, climb_rate);
 }
 
 State WingGuidance::fly(const State& from, const Vec3& reference, double ahead, double dt) {
@@ -52,7 +52,7 @@ State WingGuidance::fly(const State& from, const Vec3& reference, double ahead, 
   const double bank = std::clamp(bank_command(from, reference), bank_ - roll, bank_ + roll);
   const double rate = kGravity * std::tan((bank_ + bank) / 2) / wing_.airspeed_mps;
   const double climb = climb_command(from, reference, ahead);
-  const Vec3 drift = dt * (wind_.at(from.position.z()) + Vec3(0, 0, climb));
+  const Vec3 drift = dt * (wind_.at(from.position) + Vec3(0, 0, climb));
   State next;
   next.time_s = from.time_s + dt;
   next.position = from.position + drift;
@@ -64,12 +64,12 @@ State WingGuidance::fly(const State& from, const Vec3& reference, double ahead, 
   }
   heading_ = std::remainder(heading_ + rate * dt, 2 * kPi);
   bank_ = bank;
-  next.velocity = velocity(next.position.z(), climb);
+  next.velocity = velocity(next.position, climb);
   return next;
 }
 
 double WingGuidance::bank_command(const State& from, const Vec3& reference) const {
-  const Vec3 over_ground = velocity(from.position.z(), 0);
+  const Vec3 over_ground = velocity(from.position, 0);
   const double eta =
       std::clamp(angle_between(over_ground, reference - from.position), -kPi / 2, kPi / 2);
   const double speed = over_ground.norm();
@@ -87,7 +87,7 @@ double WingGuidance::bank_for(double across, const Vec3& over_ground) const {
 }
 
 double WingGuidance::climb_command(const State& from, const Vec3& reference, double ahead) const {
-  const double speed = velocity(from.position.z(), 0).norm();
+  const double speed = velocity(from.position, 0).norm();
   const double climb = speed * (reference.z() - from.position.z()) / ahead;
   return std::clamp(climb, -max_sink_, max_climb_);
 }

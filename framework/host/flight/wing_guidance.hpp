@@ -41,7 +41,7 @@ class WingGuidance {
   double bank() const { return bank_; }  ///< radians, positive to the left
   double max_bank() const { return max_bank_; }
   double max_turn_rate() const { return wing_.airspeed_mps / radius_; }  ///< radians/s
-  Vec3 velocity(double z, double climb_rate) const;                      ///< over the ground
+  Vec3 velocity(const Vec3& at, double climb_rate) const;                ///< over the ground
 
  private:
   /// Bank angle for an acceleration across the ground velocity.

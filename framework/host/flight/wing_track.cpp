@@ -43,7 +43,7 @@ class WingJudge {
   AirStep step_from(std::size_t i) const {
     const auto& [t0, a] = track_[i];
     const auto& [t1, b] = track_[i + 1];
-    return {t1 - t0, b - a - (t1 - t0) * wind_.at(a.z())};
+    return {t1 - t0, b - a - (t1 - t0) * wind_.at(a)};
   }
 
   /// At most the airspeed, and at least the chord of the tightest turn.

@@ -29,7 +29,7 @@ State WingVehicle::take_off(const Request& request, const RouteAhead& route, con
   const auto& loiter = request_->start.loiter;
   wing_->take_over(first, route.path.course_at(0), loiter ? loiter->sense / loiter->radius : 0);
   State flying = first;
-  flying.velocity = wing_->velocity(first.position.z(), first.velocity.z());
+  flying.velocity = wing_->velocity(first.position, first.velocity.z());
   return flying;
 }
 
@@ -64,8 +64,7 @@ FlownTo WingVehicle::fly(RouteAhead& route, const State& from, double duration, 
     const Reference reference = reference_for(now);
     State next = wing_->fly(now, reference.point, reference.ahead, dt);
     next.time_s = from.time_s + i * dt;
-    const bool other_wind =
-        request_->wind.at(now.position.z()) != request_->wind.at(last.position.z());
+    const bool other_wind = request_->wind.at(now.position) != request_->wind.at(last.position);
     if (now.time_s > last.time_s && (other_wind || bends(last, next))) {
       goes_on = report(now);
       last = now;

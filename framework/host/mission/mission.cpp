@@ -18,6 +18,7 @@
 #include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
 #include "host/mission/volume.hpp"
+#include "host/mission/wind_grid.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -382,9 +383,6 @@ void place_points(const Config& config, Mission& mission) {
     mission.ends.goal = request.goal.position;
   }
   request.start.loiter = loiter_of(file.start.loiter);
-  if (const auto heading = heading_of(file.start.heading_deg)) {
-    request.start.velocity = request.ground_velocity({request.start.position, *heading});
-  }
   site.start = mission.ends.start;
   site.goal = mission.ends.goal;
   for (std::size_t i = 0; i < file.via.size(); ++i) {
@@ -432,6 +430,24 @@ void add_task(const Config& config, Mission& mission, const Calling& calling) {
 }
 }  // namespace
 
+namespace {
+Wind wind_over(const Config& config, const Site& site) {
+  const WindEntry& entry = config.scenario.wind;
+  Wind wind = wind_of(entry);
+  if (!entry.grid.text.empty()) {
+    try {
+      wind.layers.push_back(
+          {-kInfinity,
+           {0, 0, 0},
+           read_wind_grid(entry.grid.text, entry.bands, site.frame, site.volume)});
+    } catch (const Error& error) {
+      throw ConfigError(place_of(config.scenario_tree, "wind"), "wind.grid", error.what());
+    }
+  }
+  return wind;
+}
+}  // namespace
+
 TaskOrder order_of_task(const Mission& mission, Budget budget) {
   Request request = mission.request;
   request.budget = std::move(budget);
@@ -470,7 +486,6 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   site.before = &truth;
   Request& request = mission.request;
   request.vehicle = site.vehicle;
-  request.wind = wind_of(file.wind);
   place_points(config, mission);
   if (file.task) {
     add_task(config, mission, calling);
@@ -479,6 +494,10 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
   if (!config.is_only_judged) {
     expect_within(config, mission);
     expect_in_frame(config, mission);
+  }
+  request.wind = site.wind = wind_over(config, site);
+  if (const auto heading = heading_of(file.start.heading_deg)) {
+    request.start.velocity = request.ground_velocity({request.start.position, *heading});
   }
   const double off = note_scale(mission, on_note);
   // What is clear must be so whichever way the frame is wrong.

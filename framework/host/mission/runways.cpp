@@ -13,8 +13,8 @@ constexpr double kRounded = 1;  // metres, by which files of missions are off
 
 Vec3 course_of(double compass_deg) { return unit_heading(radians(90 - compass_deg)); }
 
-double heading_on(const Request& request, double compass_deg, double z, const char* key) {
-  const auto heading = request.heading_on(course_of(compass_deg), z);
+double heading_on(const Request& request, double compass_deg, const Vec3& at, const char* key) {
+  const auto heading = request.heading_on(course_of(compass_deg), at);
   if (!heading) {
     throw Error(std::string(key) + ": the wind does not let an aeroplane of " +
                 with_digits(request.air_speed(), 4) + " m/s hold a course of " +
@@ -41,7 +41,7 @@ void add_runways(const ScenarioFile& file, Mission& mission) {
   Request& request = mission.request;
   if (const auto& takeoff = file.start.takeoff) {
     const Vec3 end = end_of(*takeoff, request.start.position);
-    const double heading = heading_on(request, takeoff->course_deg, end.z(), "start.takeoff");
+    const double heading = heading_on(request, takeoff->course_deg, end, "start.takeoff");
     mission.runways.climbs_to = end;
     mission.via.insert(mission.via.begin(), {end, kRounded, heading, std::nullopt});
     const Vec3 velocity = request.ground_velocity({request.start.position, heading});
@@ -49,7 +49,7 @@ void add_runways(const ScenarioFile& file, Mission& mission) {
   }
   if (const auto& landing = file.goal.landing) {
     const LandingLine line = line_of(*landing, request.goal.position);
-    const double heading = heading_on(request, landing->course_deg, line.entry.z(), "goal.landing");
+    const double heading = heading_on(request, landing->course_deg, line.entry, "goal.landing");
     mission.runways.glides_from = line.fix;
     mission.via.push_back({line.entry, kRounded, heading, std::nullopt});
   }

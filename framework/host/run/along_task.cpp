@@ -48,7 +48,7 @@ std::vector<Goal> TaskSections::via(const Request& request) const {
     Goal& goal = all.emplace_back();
     goal.position = points_[i];
     if (request.vehicle.wing && begins_pass_[i]) {
-      goal.heading = request.heading_on(points_[i + 1] - points_[i], points_[i].z());
+      goal.heading = request.heading_on(points_[i + 1] - points_[i], points_[i]);
     }
   }
   return all;

@@ -55,6 +55,9 @@ Json vehicle_of(const Vehicle& vehicle) {
 Json wind_of(const Wind& wind) {
   Json layers = Json::array();
   for (const Wind::Layer& layer : wind.layers) {
+    if (layer.grid) {
+      throw Error("wind of a grid (wind.grid) is not known to plugins in Python");
+    }
     layers.push_back({{"above_m", bound(layer.above_m)}, {"velocity", numbers(layer.velocity)}});
   }
   return layers;

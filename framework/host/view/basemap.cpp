@@ -12,8 +12,8 @@
 #include "altiplan/earth.hpp"
 #include "altiplan/formats/input_file.hpp"
 #include "host/base/base64.hpp"
+#include "host/base/gdal_programs.hpp"
 #include "host/base/output_file.hpp"
-#include "host/base/program.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -29,24 +29,15 @@ constexpr double kReadPerPixel = 4;
 /// Along each side the places that are brought over exactly; GDAL interpolates between them, by
 /// thin plate splines.
 constexpr int kPlaces = 10;
-/// Of a program, for images of many gigabytes.
-constexpr auto kLongestRun = std::chrono::minutes(10);
+constexpr const char* kNeeds = "--basemap";
 /// No other formats are opened: some read further files, or the network.
 const Texts kInputs{"-if", "GTiff", "-if", "MBTiles"};
-
-std::string program_of(const char* name) {
-  const auto found = find_on_path({name});
-  if (!found) {
-    throw Error(std::string("--basemap needs ") + name + ": install the Debian package 'gdal-bin'");
-  }
-  return found->string();
-}
 
 /// Brings an image into a frame, by files in a folder of its own.
 class Warp {
  public:
   Warp(std::string file, const Frame& frame, const Box& box)
-      : file_(std::move(file)), frame_(frame), box_(box) {}
+      : file_(std::move(file)), frame_(frame), box_(box), gdal_(kNeeds, file_) {}
 
   /// A WebP over the box, and nothing where the file has none.
   std::vector<std::byte> operator()() {
@@ -80,45 +71,8 @@ class Warp {
   }
 
  private:
-  std::string in_folder(const char* name) const { return folder_.path() / name; }
-
-  /// What a program of GDAL's prints. Throws Error with its first complaint: tiles that it cannot
-  /// read are none for its exit code.
-  std::string run(Texts arguments) const {
-    const std::string name = arguments.front();
-    arguments.front() = program_of(name.c_str());
-    const fs::path errors = in_folder("errors.txt");
-    fs::remove(errors);
-    Program program(std::move(arguments), {.wired = {1}, .errors = errors});
-    const auto end = Program::Clock::now() + kLongestRun;
-    std::string printed;
-    while (program.receive(printed, end)) {
-    }
-    const std::optional<int> code = program.ended(end);
-    const std::string said = first_complaint(formats::read_file(errors));
-    if (code != 0 || !said.empty()) {
-      throw Error(file_ + ": " + name + ": " +
-                  (!code          ? "not done within 10 minutes"
-                   : said.empty() ? "ended early"
-                                  : said));
-    }
-    return printed;
-  }
-
-  /// Of "ERROR 1: what is wrong" what is wrong; "" without errors.
-  static std::string first_complaint(const std::string& said) {
-    const std::size_t error = said.find("ERROR ");
-    if (error == said.npos) {
-      return "";
-    }
-    const std::size_t begin = std::min(said.find(": ", error), said.size() - 2) + 2;
-    const std::size_t end = said.find('\n', begin);
-    const std::size_t more = said.find_first_not_of(' ', std::min(end, said.size() - 1) + 1);
-    const std::string words = said.substr(begin, end - begin);
-    return words.ends_with(':') && more != said.npos
-               ? words + " " + said.substr(more, said.find('\n', more) - more)
-               : words;
-  }
+  std::string in_folder(const char* name) const { return gdal_.in_folder(name); }
+  std::string run(Texts arguments) const { return gdal_.run(std::move(arguments)); }
 
   Json info_of(const std::string& image, const Texts& options) const {
     Texts arguments{"gdalinfo", "-json"};
@@ -240,7 +194,7 @@ class Warp {
   const std::string file_;
   const Frame& frame_;
   const Box& box_;
-  TemporaryFolder folder_;
+  GdalPrograms gdal_;
 };
 
 /// The ground of a scene, which begins and ends at posts, or its box.
@@ -268,7 +222,7 @@ Basemap::Basemap(std::string file) : file_(std::move(file)) {
   if (const std::string why = formats::why_unreadable(file_); !why.empty()) {
     throw formats::InputError("--basemap " + file_, why);
   }
-  program_of("gdalwarp");
+  GdalPrograms::expect_installed(kNeeds);
 }
 
 void Basemap::add_to(Json& scene, const Frame& frame) {

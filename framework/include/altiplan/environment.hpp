@@ -7,17 +7,14 @@
 #include <vector>
 
 #include "altiplan/drawing.hpp"
-#include "altiplan/frame.hpp"
-#include "altiplan/random.hpp"
+#include "altiplan/site.hpp"
 #include "altiplan/threat.hpp"
-#include "altiplan/vehicle.hpp"
 #include "altiplan/voxel_grid.hpp"
 
 namespace altiplan {
 
 class Ground;
 class SweptVolume;
-class World;
 
 /// An obstacle of a layer near a query point.
 struct Nearby {
@@ -35,25 +32,6 @@ struct LayerInfo {
   std::vector<Threat> threats;          ///< the layer as 2-D planners see it
   /// What a user should know about the data read ("403 x 344 posts, 236 to 1076 m"), one per line.
   std::vector<std::string> notes;
-};
-
-/// Inputs besides their parameters of environments, constraints, objectives and tasks.
-struct ALTIPLAN_API Site {
-  Frame frame;                ///< without a position until a layer provides one
-  std::string frame_crs;      ///< from the scenario's `frame: {crs: …}`, or ""
-  std::vector<LonLat> about;  ///< positions of a judged mission: lengths are true about them
-  Box volume;                 ///< infinite where the scenario leaves it to the layers
-  Vehicle vehicle;
-  const World* before = nullptr;  ///< the layers before it, of other kinds all; not null
-  std::optional<Vec3> start;      ///< if already known
-  std::optional<Vec3> goal;
-  double start_time_s = 0;  ///< of the scenario, seconds since 1970-01-01 UTC; 0 where not given
-  bool has_start_time = false;
-  RandomStream random;
-
-  /// A user's point in local metres; throws Error naming what is missing (a frame with a position,
-  /// ground below it, a layer with cells).
-  Vec3 resolve(const Point& point) const;
 };
 
 /// A layer of the world: terrain, buildings, zones, radars. Immutable; a solid, closed set.

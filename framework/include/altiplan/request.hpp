@@ -59,11 +59,12 @@ struct ALTIPLAN_API Request {
   std::vector<Pose> start_poses(int count) const;
   /// The poses in which a route may arrive at the goal's position or loiter circle.
   std::vector<Pose> goal_poses(int count) const;
-  /// The heading through the air that holds a course over the ground; none if the wind prevents it.
-  std::optional<double> heading_on(const Vec3& course, double z) const;
+  /// The heading through the air that holds a course over the ground at a place; none if the wind
+  /// prevents it.
+  std::optional<double> heading_on(const Vec3& course, const Vec3& at) const;
   /// Velocity over the ground of a vehicle with a pose.
   Vec3 ground_velocity(const Pose& pose) const {
-    return air_speed() * unit_heading(pose.heading) + wind.at(pose.position.z());
+    return air_speed() * unit_heading(pose.heading) + wind.at(pose.position);
   }
   /// Airspeed, m/s: of an aeroplane its own, else the vehicle's speed.
   double air_speed() const { return vehicle.wing ? vehicle.wing->airspeed_mps : vehicle.speed_mps; }

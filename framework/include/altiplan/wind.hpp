@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -8,19 +10,47 @@
 
 namespace altiplan {
 
-/// Horizontal wind, constant within layers of height.
+/// Horizontal wind that is constant within the cells of a grid. Beyond it, that of the nearest
+/// cell.
+class ALTIPLAN_API WindGrid {
+ public:
+  /// Columns and rows of cells of a size, from the corner in the south-west; velocities, m/s east
+  /// and north, in rows from the south, each from the west.
+  WindGrid(std::array<double, 2> south_west, std::array<double, 2> step, std::array<int, 2> counts,
+           std::vector<std::array<float, 2>> velocities);
+
+  Vec3 at(const Vec3& p) const;
+  double max_speed() const { return max_speed_; }
+  /// Borders between cells strictly between two coordinates of an axis (0: x, 1: y), ascending.
+  std::vector<double> borders(std::size_t axis, double from, double to) const;
+
+ private:
+  std::array<double, 2> south_west_;
+  std::array<double, 2> step_;
+  std::array<int, 2> counts_;
+  std::vector<std::array<float, 2>> velocities_;
+  double max_speed_ = 0;
+};
+
+/// Horizontal wind, constant within layers of height, and there within the cells of a grid, if any.
 struct ALTIPLAN_API Wind {
   struct Layer {
     double above_m = -kInfinity;  ///< lower border, metres above sea level
-    Vec3 velocity{0, 0, 0};       ///< of the air, m/s, horizontal
+    Vec3 velocity{0, 0, 0};       ///< of the air, m/s, horizontal; of no meaning beside a grid
+    std::shared_ptr<const WindGrid> grid{};
+    double max_speed() const;
   };
   std::vector<Layer> layers;  ///< by ascending border; below the first border there is no wind
 
   bool is_calm() const { return layers.empty(); }
-  /// Velocity of the air at a height.
-  Vec3 at(double z) const;
-  /// Fractions of a leg's climb at which it crosses a border, ascending, without 0 and 1.
-  std::vector<double> crossings(double from_z, double to_z) const;
+  /// Velocity of the air at a place.
+  Vec3 at(const Vec3& p) const;
+  /// The greatest speed at any place.
+  double max_speed() const;
+  /// Fractions of a straight leg at which it crosses a border, ascending, without 0 and 1.
+  std::vector<double> crossings(const Vec3& from, const Vec3& to) const;
+  /// True if no border passes through the inside of a box.
+  bool is_uniform(const Box& box) const;
 };
 
 /// Ground speed, m/s, of a vehicle that holds a horizontal course (any length) by crabbing into the

@@ -33,18 +33,18 @@ struct Attitude {
   }
 };
 
-/// Yaw and pitch on a straight path with that displacement, at a height.
-Attitude attitude_on(const Vec3& way, double z, const Request& request) {
+/// Yaw and pitch on a straight path with that displacement, at a place.
+Attitude attitude_on(const Vec3& way, const Vec3& at, const Request& request) {
   const Body& body = *request.vehicle.body;
   Attitude attitude{body.yaw, 0, 0};
   if (!attitude.yaw && has_heading(way)) {
-    const auto into_air = request.vehicle.wing ? request.heading_on(way, z) : std::nullopt;
+    const auto into_air = request.vehicle.wing ? request.heading_on(way, at) : std::nullopt;
     attitude.yaw = into_air.value_or(std::atan2(way.y(), way.x()));
   }
   if (body.pitches) {
     const double run = way.head<2>().norm();
     const auto ground_speed_there =
-        run > 0 ? ground_speed(way, request.air_speed(), request.wind.at(z)) : std::nullopt;
+        run > 0 ? ground_speed(way, request.air_speed(), request.wind.at(at)) : std::nullopt;
     const double through_air =
         ground_speed_there ? run * request.air_speed() / *ground_speed_there : run;
     attitude.pitch = std::atan2(way.z(), through_air);
@@ -122,7 +122,7 @@ class BodyOnLeg {
     Vec3 from = a;
     bool is_first = true;
     const auto add_piece = [&](const Vec3& to) {
-      Attitude now = attitude_on(way, (from.z() + to.z()) / 2, request_);
+      Attitude now = attitude_on(way, (from + to) / 2, request_);
       now.yaw = now.yaw ? now.yaw : last.yaw;
       if (last.yaw || !is_first) {
         add_rotation(from, last, now);
@@ -132,7 +132,7 @@ class BodyOnLeg {
       from = to;
       is_first = false;
     };
-    for (const double crossing : request_.wind.crossings(a.z(), b.z())) {
+    for (const double crossing : request_.wind.crossings(a, b)) {
       add_piece(a + crossing * way);
     }
     add_piece(b);
@@ -143,9 +143,9 @@ class BodyOnLeg {
       return {};
     }
     const Vec3 way = here - before->from;
-    Attitude attitude = attitude_on(way, here.z(), request_);
+    Attitude attitude = attitude_on(way, here, request_);
     if (const Vec3 heading = before->heading_at(here); !attitude.yaw && has_heading(heading)) {
-      attitude.yaw = attitude_on(heading, here.z(), request_).yaw;
+      attitude.yaw = attitude_on(heading, here, request_).yaw;
     }
     return attitude;
   }

@@ -224,7 +224,9 @@ std::string point_problem(const Vec3& p, const Request& request) {
 
 namespace {
 std::string loiter_problem(const Vec3& centre, const Loiter& loiter, const Request& request) {
-  const double wind = request.wind.at(centre.z()).norm();
+  const double wind = request.wind.is_uniform(loiter.circle(centre).box())
+                          ? request.wind.at(centre).norm()
+                          : request.wind.max_speed();
   const std::string which = "circle of radius " + fixed(loiter.radius) + " m around " +
                             place(centre) + " cannot be flown: ";
   if (wind >= request.air_speed()) {

@@ -222,6 +222,20 @@ double integral(const Function& f) {
 
 constexpr double kSecondsPerHour = 3600;
 
+/// A straight phase cut at a share of its length.
+std::pair<FlownPhase, FlownPhase> cut(const FlownPhase& phase, double share) {
+  const double from = phase.from_mps * phase.from_mps;
+  const double to = phase.to_mps * phase.to_mps;
+  FlownPhase first = phase;
+  FlownPhase rest = phase;
+  first.to = rest.from = phase.from + share * (phase.to - phase.from);
+  first.to_mps = rest.from_mps = std::sqrt(from + share * (to - from));
+  const double sum = phase.from_mps + phase.to_mps;
+  first.seconds = phase.seconds * share * sum / (phase.from_mps + first.to_mps);
+  rest.seconds = phase.seconds * (1 - share) * sum / (rest.from_mps + phase.to_mps);
+  return {first, rest};
+}
+
 /// Of steady flight at each moment: what it takes to accelerate is got back in braking.
 double energy_of(const FlownPhase& phase, const Request& request, const Power& power) {
   if (phase.seconds == 0) {
@@ -229,6 +243,13 @@ double energy_of(const FlownPhase& phase, const Request& request, const Power& p
   }
   const Vec3 way = phase.to - phase.from;
   const double metres = way.norm();
+  if (phase.turn_radius_m == 0 && metres > 0) {
+    const std::vector<double> borders = request.wind.crossings(phase.from, phase.to);
+    if (!borders.empty()) {
+      const auto [first, rest] = cut(phase, borders[borders.size() / 2]);
+      return energy_of(first, request, power) + energy_of(rest, request, power);
+    }
+  }
   if (phase.turn_radius_m > 0) {
     constexpr double kGravity = 9.80665;
     const double bank =
@@ -243,9 +264,10 @@ double energy_of(const FlownPhase& phase, const Request& request, const Power& p
     const double speed = phase.from_mps + share * (phase.to_mps - phase.from_mps);
     const double along =
         metres > 0 ? share * (phase.from_mps + speed) / (phase.from_mps + phase.to_mps) : 0;
-    const double z = phase.from.z() + along * way.z();
+    const Vec3 here = phase.from + along * way;
     const Vec3 ground = metres > 0 ? Vec3(way * (speed / metres)) : Vec3::Zero();
-    return power.watts({(ground - request.wind.at(z)).head<2>().norm(), ground.z(), 0, z});
+    return power.watts(
+        {(ground - request.wind.at(here)).head<2>().norm(), ground.z(), 0, here.z()});
   };
   // Nothing changes in level flight at one speed.
   const bool is_steady = phase.from_mps == phase.to_mps && way.z() == 0;

@@ -134,15 +134,15 @@ class LegJudge {
   bool keeps_drift() const {
     const double speed = request_.air_speed();
     const double time = turn_->air_length() / speed;
-    const Vec3 drift = time * request_.wind.at((a_.z() + b_.z()) / 2);
-    const bool crosses = !request_.wind.crossings(a_.z(), b_.z()).empty();
+    const Vec3 drift = time * request_.wind.at((a_ + b_) / 2);
+    const bool crosses = !request_.wind.is_uniform(turn_->box());
     const double off = (turn_->drift - drift).norm();
     return (off <= kLengthTolerance && !crosses) || report_([&] {
              return Violation{"wind",
                               at_,
                               off,
                               0,
-                              crosses ? "the turn crosses a border of layers of wind: cut it there"
+                              crosses ? "the turn crosses a border of the wind: cut it there"
                                       : "the turn drifts by " + place(turn_->drift) +
                                             " m, where the wind at its height carries it by " +
                                             place(drift) + " m",
@@ -161,7 +161,7 @@ class LegJudge {
     }
     double climb = climb_through_air(a_, b_);
     Vec3 from = a_;
-    std::vector<double> ends = request_.wind.crossings(a_.z(), b_.z());
+    std::vector<double> ends = request_.wind.crossings(a_, b_);
     ends.push_back(1);
     for (const double end : ends) {
       const Vec3 to = a_ + end * leg_;
@@ -181,7 +181,7 @@ class LegJudge {
   bool keeps_course() const {
     return turn_ != nullptr || request_.wind.is_calm() || !has_heading(leg_) ||
            std::isfinite(flight_time(a_, b_, request_.air_speed(), request_.wind)) || report_([&] {
-             const double wind = request_.wind.at((a_.z() + b_.z()) / 2).norm();
+             const double wind = request_.wind.at((a_ + b_) / 2).norm();
              return Violation{
                  "wind",
                  at_,

@@ -31,7 +31,7 @@ std::string wait_problem(const Leg& wait, const Request& request) {
   if (request.vehicle.wing) {
     return "an aeroplane cannot wait in one place";
   }
-  const double wind = request.wind.at(wait.from.z()).norm();
+  const double wind = request.wind.at(wait.from).norm();
   return wind < request.air_speed()
              ? ""
              : "the vehicle cannot wait at " + place(wait.from) + ": the wind of " + fixed(wind) +

@@ -55,7 +55,7 @@ bool in_uniform_motion(const Leg& leg, double time_s, const Request& request, co
   };
   if (request.vehicle.wing) {
     double begin = 0;
-    std::vector<double> ends = request.wind.crossings(leg.from.z(), leg.to.z());
+    std::vector<double> ends = request.wind.crossings(leg.from, leg.to);
     ends.push_back(1);
     for (const double end : ends) {
       const Vec3 from = leg.from + begin * way;

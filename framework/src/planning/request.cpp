@@ -22,7 +22,7 @@ std::vector<Pose> on_circle(const Request& request, const Vec3& centre, const Lo
   std::vector<Pose> poses;
   for (int k = 0; k < count; ++k) {
     const Vec3 p = centre + loiter.radius * unit_heading(2 * kPi * k / count);
-    if (const auto heading = request.heading_on(loiter.course(centre, p), p.z())) {
+    if (const auto heading = request.heading_on(loiter.course(centre, p), p)) {
       poses.push_back({p, *heading});
     }
   }
@@ -48,8 +48,8 @@ std::optional<Vec3> Request::arrival_course(const Vec3& last) const {
   return goal.heading ? std::optional(ground_velocity({last, *goal.heading})) : std::nullopt;
 }
 
-std::optional<double> Request::heading_on(const Vec3& course, double z) const {
-  return altiplan::heading_on(course, air_speed(), wind.at(z));
+std::optional<double> Request::heading_on(const Vec3& course, const Vec3& at) const {
+  return altiplan::heading_on(course, air_speed(), wind.at(at));
 }
 
 std::vector<Pose> Request::start_poses(int count) const {
@@ -59,7 +59,7 @@ std::vector<Pose> Request::start_poses(int count) const {
   if (!has_heading(start.velocity)) {
     return all_headings(start.position, count);
   }
-  const auto heading = heading_on(start.velocity, start.position.z());
+  const auto heading = heading_on(start.velocity, start.position);
   return heading ? std::vector<Pose>{{start.position, *heading}} : std::vector<Pose>{};
 }
 

@@ -2,29 +2,99 @@
 #include "altiplan/wind.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace altiplan {
 
-Vec3 Wind::at(double z) const {
-  Vec3 velocity(0, 0, 0);
-  for (const Layer& layer : layers) {
-    if (z >= layer.above_m) {
-      velocity = layer.velocity;
-    }
+WindGrid::WindGrid(std::array<double, 2> south_west, std::array<double, 2> step,
+                   std::array<int, 2> counts, std::vector<std::array<float, 2>> velocities)
+    : south_west_(south_west), step_(step), counts_(counts), velocities_(std::move(velocities)) {
+  for (const auto& [east, north] : velocities_) {
+    max_speed_ = std::max(max_speed_, std::hypot(double(east), double(north)));
   }
-  return velocity;
 }
 
-std::vector<double> Wind::crossings(double from_z, double to_z) const {
-  std::vector<double> shares;
+Vec3 WindGrid::at(const Vec3& p) const {
+  const auto cell = [&](std::size_t axis) {
+    const double n = std::floor((p[Eigen::Index(axis)] - south_west_[axis]) / step_[axis]);
+    return std::size_t(std::clamp(n, 0.0, double(counts_[axis] - 1)));
+  };
+  const auto& [east, north] = velocities_[cell(1) * std::size_t(counts_[0]) + cell(0)];
+  return {east, north, 0};
+}
+
+std::vector<double> WindGrid::borders(std::size_t axis, double from, double to) const {
+  const auto [low, high] = std::minmax(from, to);
+  const auto near = [&](double at) { return std::floor((at - south_west_[axis]) / step_[axis]); };
+  std::vector<double> found;
+  for (double n = std::max(1.0, near(low)); n <= std::min(counts_[axis] - 1.0, near(high) + 1);
+       ++n) {
+    const double border = south_west_[axis] + n * step_[axis];
+    if (border > low && border < high) {
+      found.push_back(border);
+    }
+  }
+  return found;
+}
+
+double Wind::Layer::max_speed() const { return grid ? grid->max_speed() : velocity.norm(); }
+
+Vec3 Wind::at(const Vec3& p) const {
+  const Layer* in_force = nullptr;
   for (const Layer& layer : layers) {
-    const double share = (layer.above_m - from_z) / (to_z - from_z);
+    if (p.z() >= layer.above_m) {
+      in_force = &layer;
+    }
+  }
+  if (in_force == nullptr) {
+    return {0, 0, 0};
+  }
+  return in_force->grid ? in_force->grid->at(p) : in_force->velocity;
+}
+
+double Wind::max_speed() const {
+  double speed = 0;
+  for (const Layer& layer : layers) {
+    speed = std::max(speed, layer.max_speed());
+  }
+  return speed;
+}
+
+std::vector<double> Wind::crossings(const Vec3& from, const Vec3& to) const {
+  std::vector<double> shares;
+  const auto add = [&](Eigen::Index axis, double border) {
+    const double share = (border - from[axis]) / (to[axis] - from[axis]);
     if (share > 0 && share < 1) {
       shares.push_back(share);
+    }
+  };
+  for (const Layer& layer : layers) {
+    add(2, layer.above_m);
+    for (const std::size_t axis : {0U, 1U}) {
+      const auto at = Eigen::Index(axis);
+      if (layer.grid) {
+        for (const double border : layer.grid->borders(axis, from[at], to[at])) {
+          add(at, border);
+        }
+      }
     }
   }
   std::sort(shares.begin(), shares.end());
   return shares;
+}
+
+bool Wind::is_uniform(const Box& box) const {
+  bool is_uniform = true;
+  for (const Layer& layer : layers) {
+    is_uniform &= !(layer.above_m > box.min.z() && layer.above_m < box.max.z());
+    for (const std::size_t axis : {0U, 1U}) {
+      const auto at = Eigen::Index(axis);
+      if (layer.grid) {
+        is_uniform &= layer.grid->borders(axis, box.min[at], box.max[at]).empty();
+      }
+    }
+  }
+  return is_uniform;
 }
 
 std::optional<double> ground_speed(const Vec3& course, double airspeed, const Vec3& wind) {
@@ -55,11 +125,11 @@ double flight_time(const Vec3& from, const Vec3& to, double airspeed, const Wind
   }
   double time = 0;
   double begin = 0;
-  std::vector<double> ends = wind.crossings(from.z(), to.z());
+  std::vector<double> ends = wind.crossings(from, to);
   ends.push_back(1);
   for (const double end : ends) {
-    const double z = from.z() + (begin + end) / 2 * leg.z();
-    const std::optional<double> speed = ground_speed(leg, airspeed, wind.at(z));
+    const Vec3 middle = from + (begin + end) / 2 * leg;
+    const std::optional<double> speed = ground_speed(leg, airspeed, wind.at(middle));
     time += speed ? (end - begin) * leg.head<2>().norm() / *speed : kInfinity;
     begin = end;
   }

@@ -56,17 +56,9 @@ class FlightEnergy final : public Objective {
     return mps;
   }
 
-  static double strongest_wind(const Request& request) {
-    double wind = 0;
-    for (const Wind::Layer& layer : request.wind.layers) {
-      wind = std::max(wind, layer.velocity.norm());
-    }
-    return wind;
-  }
-
   static double least_seconds(const Vec3& way, const Request& request) {
     const double climbs_s = request.vehicle.climb_time(way.z());
-    const double wind = strongest_wind(request);
+    const double wind = request.wind.max_speed();
     if (!request.vehicle.wing) {
       const double fast = fastest(request.vehicle);
       return wind > (kAirspeeds - 1) * fast ? 0 : std::max(way.norm() / fast, climbs_s);

@@ -74,13 +74,10 @@ class FlightTime final : public Objective {
   double do_bound(const Vec3& from, const Vec3& to, const Request& request) const override {
     const Vec3 way = to - from;
     if (request.vehicle.wing) {  // by its airspeed, which is level: going down takes it no time
-      double wind = 0;
-      for (const Wind::Layer& layer : request.wind.layers) {
-        wind = std::max(wind, layer.velocity.norm());
-      }
-      return params_.above_m ? 0
-                             : std::max(way.head<2>().norm() / (request.air_speed() + wind),
-                                        request.vehicle.climb_time(way.z()));
+      const double fastest = request.air_speed() + request.wind.max_speed();
+      return params_.above_m
+                 ? 0
+                 : std::max(way.head<2>().norm() / fastest, request.vehicle.climb_time(way.z()));
     }
     const Vehicle& vehicle = request.vehicle;
     double fastest = vehicle.speed_mps;

@@ -170,7 +170,8 @@ class Columns {
       const double nearer = radius > 0 ? 1.1 * radius + 3 * cell_ : 0;
       return kNearer * std::max(0.0, length - nearer);
     }
-    return request_.wind.layers.size() == 1 && !request_.start.loiter
+    const std::vector<Wind::Layer>& layers = request_.wind.layers;
+    return layers.size() == 1 && !layers.front().grid && !request_.start.loiter
                ? kNearer * through_air(Vec3(x, y, 0) * cell_)
                : 0;
   }
@@ -183,8 +184,10 @@ class Columns {
     }
     double fastest = 0;
     for (const Wind::Layer& layer : request_.wind.layers) {
-      fastest =
-          std::max(fastest, ground_speed(leg, request_.air_speed(), layer.velocity).value_or(0));
+      fastest = std::max(fastest,
+                         layer.grid
+                             ? request_.air_speed() + layer.max_speed()
+                             : ground_speed(leg, request_.air_speed(), layer.velocity).value_or(0));
     }
     return fastest > 0 ? run / fastest * request_.air_speed() : kInfinity;
   }

@@ -57,8 +57,8 @@ std::optional<Fillet> fillet_of(const Vec3& before, const Vec3& corner, const Ve
   const Vec3 u = into / into.head<2>().norm();  // climbs
   const Vec3 v = out_of / out_of.head<2>().norm();
   const auto cross = [](const Vec3& p, const Vec3& q) { return p.x() * q.y() - p.y() * q.x(); };
-  const auto from = request.heading_on(u, corner.z());
-  const auto to = request.heading_on(v, corner.z());
+  const auto from = request.heading_on(u, corner);
+  const auto to = request.heading_on(v, corner);
   if (std::abs(cross(u, v)) <= kAngleTolerance || !from || !to) {
     return std::nullopt;
   }
@@ -66,7 +66,7 @@ std::optional<Fillet> fillet_of(const Vec3& before, const Vec3& corner, const Ve
   if (radius * std::abs(turn) < kLengthTolerance) {
     return std::nullopt;  // a leg of no length
   }
-  const Vec3 drift = radius * std::abs(turn) / request.air_speed() * request.wind.at(corner.z());
+  const Vec3 drift = radius * std::abs(turn) / request.air_speed() * request.wind.at(corner);
   const Vec3 across = Leg::turning({Vec3::Zero(), *from}, turn, radius, 0, drift).to;
   Fillet fillet{{}, cross(across, v) / cross(u, v), cross(u, across) / cross(u, v)};
   if (fillet.into <= 0 || fillet.out_of <= 0) {

@@ -140,7 +140,7 @@ class TurnShortening {
     }
     const Vec3 at = leg.at(place.part);
     const Vec3 course = leg.to - leg.from;
-    const auto heading = has_heading(course) ? request_.heading_on(course, at.z()) : std::nullopt;
+    const auto heading = has_heading(course) ? request_.heading_on(course, at) : std::nullopt;
     return heading ? std::optional(Pose{at, *heading}) : std::nullopt;
   }
 

@@ -83,10 +83,7 @@ class Cover final : public Task {
     const double angle = std::min(
         {request.limits.max_slope(), request.vehicle.wing->climb, request.vehicle.wing->sink});
     const double speed = request.air_speed();
-    double strongest = 0;
-    for (const auto& layer : request.wind.layers) {
-      strongest = std::max(strongest, layer.velocity.norm());
-    }
+    const double strongest = request.wind.max_speed();
     constexpr double kRounding = 0.999;
     return kRounding * std::tan(angle) * speed / (speed + strongest);
   }

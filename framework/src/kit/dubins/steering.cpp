@@ -64,18 +64,18 @@ Steering::Steering(const Request& request, double radius)
   limits_.radius = radius;
   limits_.climb = request.level_m ? 0 : std::min(limits.max_climb, kSteepest);
   limits_.sink = request.level_m ? 0 : std::min(limits.max_descent(), kSteepest);
-  is_layered_ = !wind_.crossings(request.volume.min.z(), request.volume.max.z()).empty();
+  is_layered_ = !wind_.is_uniform(request.volume);
   for (std::size_t i = 0; i < wind_.layers.size(); ++i) {
     const bool is_below =
         i + 1 < wind_.layers.size() && wind_.layers[i + 1].above_m < request.volume.min.z();
     if (!is_below && wind_.layers[i].above_m <= request.volume.max.z()) {
-      strongest_ = std::max(strongest_, wind_.layers[i].velocity.norm());
+      strongest_ = std::max(strongest_, wind_.layers[i].max_speed());
     }
   }
 }
 
 std::optional<Pose> Steering::in_wind(const Pose& pose, const Vec3& wind) const {
-  const Vec3 there = wind_.at(pose.position.z());
+  const Vec3 there = wind_.at(pose.position);
   if (there == wind) {
     return pose;
   }
@@ -86,13 +86,13 @@ std::optional<Pose> Steering::in_wind(const Pose& pose, const Vec3& wind) const 
 Pose Steering::pose_on(const Leg& leg, double share, double heading) const {
   const Vec3 at = leg.at(share);
   if (is_layered_ && leg.has_heading()) {
-    heading = heading_on(leg.track(share), speed_, wind_.at(at.z())).value_or(heading);
+    heading = heading_on(leg.track(share), speed_, wind_.at(at)).value_or(heading);
   }
   return {at, heading};
 }
 
 Leg Steering::piece(const Pose& from, double length, double turn, double gradient) const {
-  const Vec3 drift = length / speed_ * wind_.at(from.position.z());
+  const Vec3 drift = length / speed_ * wind_.at(from.position);
   const double climb = gradient * length;
   if (turn != 0) {
     return Leg::turning(from, turn, length / std::abs(turn), climb, drift);
@@ -102,7 +102,7 @@ Leg Steering::piece(const Pose& from, double length, double turn, double gradien
 }
 
 Leg Steering::piece_to(const Pose& to, double length, double turn, double gradient) const {
-  const Vec3 drift = length / speed_ * wind_.at(to.position.z());
+  const Vec3 drift = length / speed_ * wind_.at(to.position);
   const double climb = gradient * length;
   if (turn != 0) {  // flown backwards, in the reversed wind
     const Pose back{to.position, to.heading + kPi};

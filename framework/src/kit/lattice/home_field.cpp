@@ -83,6 +83,10 @@ HomeField::LegCost HomeField::energy(const Request& request, std::shared_ptr<con
   if (!request.vehicle.speed_near.empty()) {
     throw Error("ways home are not known of a vehicle with speed_near");
   }
+  if (std::any_of(request.wind.layers.begin(), request.wind.layers.end(),
+                  [](const Wind::Layer& layer) { return layer.grid != nullptr; })) {
+    throw Error("ways home are not known in wind that differs from place to place (wind.grid)");
+  }
   Request alone = request;  // with what the energy of a leg depends on
   alone.world = std::make_shared<const World>();
   alone.constraints.clear();

@@ -41,8 +41,8 @@ class ALTIPLAN_API Steering {
   /// The same that ends in a pose.
   Leg piece_to(const Pose& to, double length, double turn, double gradient) const;
 
-  /// The shortest path through the air to a pose, all in the wind at its mean height: of poses in
-  /// other layers the courses over the ground are kept, as a straight leg keeps its own across a
+  /// The shortest path through the air to a pose, all in the wind halfway: of poses in
+  /// other wind the courses over the ground are kept, as a straight leg keeps its own across a
   /// border. Turns are not flown there, so that constraints refuse such a path. None if there is
   /// none.
   std::optional<PosePath> path(const Pose& from, const Pose& to) const;
@@ -60,7 +60,7 @@ class ALTIPLAN_API Steering {
  private:
   /// Of the air between two heights.
   Vec3 wind_between(const Pose& from, const Pose& to) const {
-    return wind_.at((from.position.z() + to.position.z()) / 2);
+    return wind_.at((from.position + to.position) / 2);
   }
 
   /// The pose with its course over the ground in another wind; none if that does not allow it.

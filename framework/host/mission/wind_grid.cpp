@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/mission/wind_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "altiplan/error.hpp"
+#include "altiplan/formats/input_file.hpp"
+#include "host/base/gdal_programs.hpp"
+#include "host/base/json.hpp"
+
+namespace altiplan::host {
+namespace {
+
+using Place = std::array<double, 2>;
+
+constexpr double kMaxCells = 4e6;
+/// No other formats are opened: some read further files, or the network.
+const std::vector<std::string> kInputs{"-if", "GTiff", "-if", "GRIB"};
+/// Faster than any wind: a file in other units, or of other things.
+constexpr double kFastest = 150;
+
+/// A file's bands as GDAL reads them.
+class File {
+ public:
+  File(const std::string& file, const std::vector<int>& bands)
+      : file_(file), gdal_("wind.grid", file) {
+    if (const std::string why = formats::why_unreadable(file); !why.empty()) {
+      throw Error(file + ": " + why);
+    }
+    const Json info = parse_json(gdal("gdalinfo", {"-json"}, {}));
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      counts_[axis] = info.at("size").at(axis).get<int>();
+    }
+    const Json& transform = info.value("geoTransform", Json());
+    if (transform.is_null() || transform.at(2) != 0 || transform.at(4) != 0 ||
+        !(transform.at(1) > 0 && transform.at(5) < 0)) {
+      refuse(
+          "has no georeference of a corner and a cell size, from the north: gdalwarp writes one");
+    }
+    step_ = {transform.at(1).get<double>(), -transform.at(5).get<double>()};
+    south_west_ = {transform.at(0).get<double>(),
+                   transform.at(3).get<double>() - counts_[1] * step_[1]};
+    const Json system = info.value("coordinateSystem", Json::object());
+    const std::string wkt = system.value("wkt", "");
+    is_geographic_ = wkt.starts_with("GEOG");
+    if (!wkt.empty() && !is_geographic_) {
+      refuse(
+          "is not in longitudes and latitudes, and its directions may not be east and north: "
+          "warp it, and turn its vectors");
+    }
+    read(info.at("bands"), bands.empty() ? bands_of(info.at("bands")) : bands);
+  }
+
+  bool is_geographic() const { return is_geographic_; }
+  const Place& step() const { return step_; }
+  /// South-west corner of the cell that holds a place.
+  Place corner(const Place& place) const {
+    Place corner{};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double at = std::floor((place[axis] - south_west_[axis]) / step_[axis]);
+      corner[axis] = south_west_[axis] + at * step_[axis];
+    }
+    return corner;
+  }
+  /// Toward east and north at a place. Throws Error where there is none.
+  std::array<float, 2> at(Place place) const {
+    if (is_geographic_) {
+      constexpr double kTurn = 360;
+      place[0] -= kTurn * std::floor((place[0] - south_west_[0]) / kTurn);
+    }
+    const double i = std::floor((place[0] - south_west_[0]) / step_[0]);
+    const double j = std::floor((place[1] - south_west_[1]) / step_[1]);
+    if (!(i >= 0 && j >= 0 && i < counts_[0] && j < counts_[1])) {
+      refuse("does not cover the volume: none of its cells lies at " + text(place));
+    }
+    const std::size_t cell =
+        (std::size_t(counts_[1]) - 1 - std::size_t(j)) * std::size_t(counts_[0]) + std::size_t(i);
+    const std::array<float, 2> wind{values_[0][cell], values_[1][cell]};
+    if (!(std::hypot(double(wind[0]), double(wind[1])) <= kFastest)) {
+      refuse("has no wind of up to " + std::to_string(int(kFastest)) + " m/s at " + text(place));
+    }
+    return wind;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const { throw Error(file_ + ": " + why); }
+  std::string text(const Place& place) const {
+    return (is_geographic_ ? "longitude " : "x ") + std::to_string(place[0]) +
+           (is_geographic_ ? ", latitude " : ", y ") + std::to_string(place[1]);
+  }
+
+  std::string gdal(const char* program, const std::vector<std::string>& options,
+                   const std::string& output) const {
+    std::vector<std::string> arguments{program};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments.insert(arguments.end(), kInputs.begin(), kInputs.end());
+    arguments.push_back(std::filesystem::absolute(file_));
+    if (!output.empty()) {
+      arguments.push_back(output);
+    }
+    return gdal_.run(std::move(arguments));
+  }
+
+  static std::string element(const Json& band) {
+    return band.value("metadata", Json::object())
+        .value("", Json::object())
+        .value("GRIB_ELEMENT", "");
+  }
+
+  std::vector<int> bands_of(const Json& bands) const {
+    std::vector<int> found;
+    for (const char* name : {"UGRD", "VGRD"}) {
+      for (const Json& band : bands) {
+        if (element(band) == name) {
+          found.push_back(band.at("band").get<int>());
+        }
+      }
+    }
+    if (found.empty() && bands.size() == 2 && element(bands.at(0)).empty()) {
+      return {1, 2};
+    }
+    if (found.size() != 2) {
+      refuse(
+          "has " + std::to_string(bands.size()) +
+          " bands: give bands, the numbers of those toward east and north (gdalinfo lists them)");
+    }
+    return found;
+  }
+
+  void read(const Json& bands, const std::vector<int>& numbers) {
+    std::vector<std::string> options{"-q",      "-of", "ENVI",          "-ot",
+                                     "Float32", "-co", "INTERLEAVE=BSQ"};
+    for (std::size_t n = 0; n < 2; ++n) {
+      if (std::size_t(numbers[n]) > bands.size()) {
+        refuse("has no band " + std::to_string(numbers[n]));
+      }
+      const std::string name = element(bands.at(std::size_t(numbers[n]) - 1));
+      if (!name.empty() && name != (n == 0 ? "UGRD" : "VGRD")) {
+        refuse("band " + std::to_string(numbers[n]) + " is " + name + ", expected " +
+               (n == 0 ? "UGRD, toward east" : "VGRD, toward north"));
+      }
+      options.insert(options.end(), {"-b", std::to_string(numbers[n])});
+    }
+    gdal("gdal_translate", options, gdal_.in_folder("wind.bin"));
+    const std::string bytes = formats::read_file(gdal_.in_folder("wind.bin"));
+    const std::size_t cells = std::size_t(counts_[0]) * std::size_t(counts_[1]);
+    if (bytes.size() != 2 * cells * sizeof(float)) {
+      refuse("is damaged");
+    }
+    for (std::size_t n = 0; n < 2; ++n) {
+      values_[n].resize(cells);
+      std::memcpy(values_[n].data(), bytes.data() + n * cells * sizeof(float),
+                  cells * sizeof(float));
+      const Json none = bands.at(std::size_t(numbers[n]) - 1).value("noDataValue", Json());
+      if (none.is_number()) {
+        std::replace(values_[n].begin(), values_[n].end(), none.get<float>(), NAN);
+      }
+    }
+  }
+
+  std::string file_;
+  GdalPrograms gdal_;
+  std::array<int, 2> counts_{};
+  Place step_{};
+  Place south_west_{};
+  bool is_geographic_ = false;
+  std::array<std::vector<float>, 2> values_;  ///< rows from the north
+};
+
+/// Places of the file and of the frame, and how directions turn between them.
+class Places {
+ public:
+  Places(const File& file, const Frame& frame) : is_same_(!file.is_geographic()), frame_(frame) {
+    if (!is_same_ && !frame.has_position()) {
+      throw Error(
+          "it is in longitudes and latitudes, but the world has no place on the Earth: give "
+          "frame, or a layer with one");
+    }
+  }
+  Place local(const Place& of_file) const {
+    return is_same_ ? of_file : frame_.to_local(of_file[0], of_file[1]);
+  }
+  Place of_file(const Place& local) const {
+    return is_same_ ? local : frame_.to_lonlat(local[0], local[1]);
+  }
+  std::array<float, 2> turned(const std::array<float, 2>& wind, const Place& at) const {
+    if (is_same_) {
+      return wind;
+    }
+    constexpr double kAside = 1e-4;  // degrees
+    const Place here = frame_.to_local(at[0], at[1]);
+    const Place east = frame_.to_local(at[0] + kAside, at[1]);
+    const double length = std::hypot(east[0] - here[0], east[1] - here[1]);
+    const double x = (east[0] - here[0]) / length;
+    const double y = (east[1] - here[1]) / length;
+    return {float(wind[0] * x - wind[1] * y), float(wind[0] * y + wind[1] * x)};
+  }
+
+ private:
+  bool is_same_;
+  const Frame& frame_;
+};
+}  // namespace
+
+std::shared_ptr<const WindGrid> read_wind_grid(const std::string& name,
+                                               const std::vector<int>& bands, const Frame& frame,
+                                               const Box& volume) {
+  const File file(name, bands);
+  const Places places(file, frame);
+  const Vec3 middle = (volume.min + volume.max) / 2;
+  // Borders are those of the file's cell in the middle, and of others as large.
+  const Place corner = file.corner(places.of_file({middle.x(), middle.y()}));
+  const Place near = places.local(corner);
+  const Place far = places.local({corner[0] + file.step()[0], corner[1] + file.step()[1]});
+  Place south_west{};
+  Place step{};
+  std::array<int, 2> counts{};
+  double cells = 1;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto at = Eigen::Index(axis);
+    step[axis] = far[axis] - near[axis];
+    const double before = std::ceil((near[axis] - volume.min[at]) / step[axis]);
+    south_west[axis] = near[axis] - before * step[axis];
+    const double count = std::max(1.0, std::ceil((volume.max[at] - south_west[axis]) / step[axis]));
+    cells *= count;
+    if (!(cells <= kMaxCells)) {
+      throw Error(name + ": has more than " + std::to_string(std::size_t(kMaxCells)) +
+                  " cells in the volume");
+    }
+    counts[axis] = int(count);
+  }
+  std::vector<std::array<float, 2>> velocities;
+  for (int j = 0; j < counts[1]; ++j) {
+    for (int i = 0; i < counts[0]; ++i) {
+      // Of the edge cells, a place within the volume.
+      const Vec3 centre(south_west[0] + (i + 0.5) * step[0], south_west[1] + (j + 0.5) * step[1],
+                        0);
+      const Vec3 inside = centre.cwiseMax(volume.min).cwiseMin(volume.max);
+      const Place at = places.of_file({inside.x(), inside.y()});
+      velocities.push_back(places.turned(file.at(at), at));
+    }
+  }
+  return std::make_shared<WindGrid>(south_west, step, counts, std::move(velocities));
+}
+}  // namespace altiplan::host

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wind_grid_test.py PROGRAM SOURCES: wind by the cells of a file that GDAL wrote (skipped without its programs).
+
+`python3 wind_grid_test.py PROGRAM SOURCES WindGrid.test_a_geotiff` runs one case."""
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, SOURCES = sys.argv[1:3]
+SCENARIO = """altiplan: 1
+environment: [{box: {min_m: [0, 0, -20], max_m: [10, 10, -10]}}]
+%s
+volume: {min_m: [0, 0, 0], max_m: [2000, 1500, 200]}
+vehicle: {radius_m: 2, %s}
+start: {at_m: START}
+goal: {at_m: GOAL}
+wind: {%s}
+objective: {%s}
+"""
+WING = "wing: {airspeed_mps: 20}"
+COPTER = "speed_mps: 12, energy: {measured: {level: [{airspeed_mps: 0, power_w: 300}, " \
+    "{airspeed_mps: 10, power_w: 250}, {airspeed_mps: 30, power_w: 2500}], mass_kg: 2, efficiency: 0.7}}"
+PIPELINE = """altiplan: 1
+scenario: s.yaml
+steps:
+  - plan: astar
+    with: {cell_m: [100, 100, 50]}
+"""
+# Section 4.1 of GRIB2, templates 4.0: momentum, u or v, at 10 m above the ground.
+GRIB = ["-of", "GRIB", "-co", "DISCIPLINE=0", "-co", "PDS_PDTN=0"] + [
+    option for band, parameter in ((1, 2), (2, 3)) for option in
+    ("-co", f"BAND_{band}_PDS_TEMPLATE_NUMBERS=2 {parameter} 2 0 96 0 0 0 1 0 0 0 0 103 0 0 0 0 10 255 0 0 0 0 0")]
+
+
+@unittest.skipUnless(shutil.which("gdal_translate"), "GDAL's programs are not installed")
+class WindGrid(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "p.yaml").write_text(PIPELINE)
+
+    def gdal(self, *arguments):
+        subprocess.run(arguments, cwd=self.folder, check=True, capture_output=True, timeout=120)
+
+    def grid(self, name, east, north, corner=(0, 0), cell=500, options=(), system=()):
+        """A file of these rows from the north."""
+        for band, rows in (("u", east), ("v", north)):
+            (self.folder / f"{band}.asc").write_text(
+                f"ncols {len(rows[0])}\nnrows {len(rows)}\nxllcorner {corner[0]}\nyllcorner {corner[1]}\n"
+                f"cellsize {cell}\n" + "\n".join(" ".join(map(str, row)) for row in rows) + "\n")
+        self.gdal("gdalbuildvrt", "-overwrite", "-q", *system, "-separate", "w.vrt", "u.asc", "v.asc")
+        self.gdal("gdal_translate", "-q", *options, "w.vrt", name)
+
+    def altiplan(self, *arguments, code=0):
+        done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def scenario(self, wind, vehicle=WING, objective="time: {}", frame=""):
+        self.text = SCENARIO % (frame, vehicle, wind, objective)
+        self.between((50, 750, 100), (1950, 750, 100))
+
+    def between(self, start, goal):
+        (self.folder / "s.yaml").write_text(self.text.replace("START", str(list(start))).replace(
+            "GOAL", str(list(goal))))
+
+    def route(self):
+        return json.loads((self.folder / "r.json").read_text())["steps"][-1]["route"]
+
+    def cost(self, *points, code=0):
+        """Of the route as judged."""
+        self.between(points[0], points[-1])
+        rows = "\n".join(",".join(map(str, point)) for point in points)
+        (self.folder / "r.csv").write_text("x_m,y_m,z_m\n" + rows + "\n")
+        said = self.altiplan("check", "--route", "r.csv", "--scenario", "s.yaml", "--json", code=code)
+        return json.loads(said[:said.rindex("}") + 1])["cost"]
+
+    def test_a_geotiff(self):
+        self.grid("w.tif", [[5, -5, 0, 10], [0, 0, 0, 0], [0, 0, 0, 0]], [[0] * 4] * 3)
+        self.scenario("grid: w.tif")
+        self.assertAlmostEqual(self.cost((50, 1400, 100), (1950, 1400, 100)),
+                               450 / 25 + 500 / 15 + 500 / 20 + 450 / 30, 6)
+        self.assertAlmostEqual(self.cost((50, 700, 100), (1950, 700, 100)), 1900 / 20, 6)
+
+    def test_a_leg_through_a_cell_that_is_too_windy_is_refused(self):
+        self.grid("w.tif", [[0, 0, -21, 0]] + [[0] * 4] * 2, [[0] * 4] * 3)
+        self.scenario("grid: w.tif")
+        self.cost((50, 1400, 100), (1950, 1400, 100), code=1)
+        self.cost((50, 900, 100), (1950, 900, 100))
+
+    def test_grib(self):
+        """One cell of it about the origin is wind from one direction."""
+        east, north = [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]], [[0] * 4, [0, -6, 0, 0], [0] * 4]
+        self.grid("w.grb2", east, north, (8, 47), 0.25, GRIB, ("-a_srs", "EPSG:4326"))
+        frame = "frame: {crs: local, origin_lonlat: [8.3, 47.3]}"
+        ends = (50, 700, 100), (1950, 900, 100)
+        self.scenario("grid: w.grb2", frame=frame)
+        of_grid = self.cost(*ends)
+        self.scenario(f"from_deg: 315, speed_mps: {math.hypot(6, 6)}", frame=frame)
+        self.assertAlmostEqual(of_grid, self.cost(*ends), delta=0.02)  # east turns by 0.02 degrees
+        self.scenario("grid: w.grb2, bands: [2, 1]", frame=frame)
+        self.assertIn("band 2 is VGRD, expected UGRD", self.altiplan("run", "p.yaml", code=3))
+
+    def test_routes_take_the_wind_behind(self):
+        self.grid("w.tif", [[8] * 4, [-8] * 4, [-8] * 4], [[0] * 4] * 3)
+        self.scenario("grid: w.tif", COPTER, "energy: {}")
+        self.altiplan("run", "p.yaml", "-o", "r.json")
+        route = self.route()
+        self.assertGreater(max(y for _, y, _ in route), 1000)
+        self.scenario("from_deg: 0, speed_mps: 0", COPTER, "energy: {}")
+        self.altiplan("run", "p.yaml", "-o", "r.json")
+        route = self.route()
+        self.assertEqual({y for _, y, _ in route}, {750})
+
+    def test_refusals(self):
+        def refusal(wind):
+            self.scenario(wind)
+            return self.altiplan("run", "p.yaml", code=3)
+        self.grid("small.tif", [[0] * 3] * 3, [[0] * 3] * 3)
+        self.assertIn("does not cover the volume", refusal("grid: small.tif"))
+        self.grid("fast.tif", [[200] * 4] * 3, [[0] * 4] * 3)
+        self.assertIn("has no wind of up to 150 m/s", refusal("grid: fast.tif"))
+        self.grid("utm.tif", [[0] * 4] * 3, [[0] * 4] * 3, system=("-a_srs", "EPSG:32632"))
+        self.assertIn("is not in longitudes and latitudes", refusal("grid: utm.tif"))
+        self.grid("lonlat.tif", [[0] * 4] * 3, [[0] * 4] * 3, (8, 47), 0.25, system=("-a_srs", "EPSG:4326"))
+        self.assertIn("no place on the Earth", refusal("grid: lonlat.tif"))
+        self.gdal("gdal_translate", "-q", "-b", "1", "lonlat.tif", "one.tif")
+        self.assertIn("give bands", refusal("grid: one.tif"))
+        self.assertIn("has no band 3", refusal("grid: small.tif, bands: [1, 3]"))
+        (self.folder / "none.tif").write_text("nothing")
+        self.assertIn("none.tif", refusal("grid: none.tif"))
+        self.assertIn("expected from_deg and speed_mps, or layers, or grid",
+                      refusal("grid: small.tif, from_deg: 3, speed_mps: 3"))
+        self.assertIn("expected bands with grid", refusal("bands: [1, 2]"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]] + sys.argv[3:])
