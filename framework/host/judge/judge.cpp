@@ -190,11 +190,12 @@ Cost price(const Route& route, const Request& request, const std::vector<Goal>& 
                                route.front() == request.start.position &&
                                route.back() == request.goal.position;
   if (request.objective && is_between_ends && cost.bound > cost.cost * kRounding) {
-    throw PluginError(
-        "the objective violated the contract of its interface: no route costs less than " +
-            with_digits(cost.bound, 9) + " by its bounds, and this one costs " +
-            with_digits(cost.cost, 9),
-        Reason::contract);
+    throw PluginError("the objective " + request.objective->name() +
+                          (request.objective->name().empty() ? "" : " ") +
+                          "violated the contract of its interface: no route costs less than " +
+                          with_digits(cost.bound, 9) + " by its bounds, and this one costs " +
+                          with_digits(cost.cost, 9),
+                      Reason::contract);
   }
   return cost;
 }

@@ -90,11 +90,13 @@ class WeightedMean final : public WeightedSum, public kit::MeanCost {
   static std::shared_ptr<const Objective> of(const std::vector<Term>& terms) {
     auto sum = std::make_shared<WeightedMean>(terms);
     for (const Term& term : terms) {
-      sum->means_.push_back(dynamic_cast<const kit::MeanCost*>(term.objective.get()));
+      const auto* mean = dynamic_cast<const kit::MeanCost*>(term.objective.get());
+      if (mean == nullptr || !mean->is_mean()) {
+        return nullptr;
+      }
+      sum->means_.push_back(mean);
     }
-    const bool are_means =
-        std::find(sum->means_.begin(), sum->means_.end(), nullptr) == sum->means_.end();
-    return are_means ? sum : nullptr;
+    return sum;
   }
   using WeightedSum::WeightedSum;
 
@@ -126,11 +128,12 @@ std::shared_ptr<const Objective> make_objective(const Config& config, const std:
     return mean != nullptr ? mean : std::make_shared<WeightedSum>(std::move(terms));
   }
   try {
-    std::shared_ptr<const Objective> made =
+    std::shared_ptr<Objective> made =
         plugin(*config.registry, "objective", name).objective(&parameters, site);
     if (made == nullptr) {
       throw PluginError("made no object");
     }
+    made->set_name("'" + name + "' (" + key + ")");
     return made;
   } catch (const ConfigError&) {
     throw;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "altiplan/route.hpp"
@@ -51,6 +52,9 @@ class ALTIPLAN_API Objective {
   /// Unit of costs ("m"), for people; "" without one.
   std::string unit() const { return do_unit(); }
   Traits traits() const { return do_traits(); }
+  /// What messages call it: "'exposure' (scenario.objective.exposure)"; "" without a name.
+  void set_name(std::string name) { name_ = std::move(name); }
+  const std::string& name() const { return name_; }
 
  protected:
   /// The sum of cost over the legs, each at its time.
@@ -66,6 +70,8 @@ class ALTIPLAN_API Objective {
   virtual std::string do_unit() const = 0;
   /// Default: depends on the place alone.
   virtual Traits do_traits() const;
+
+  std::string name_;
 };
 
 // By the request's objective; by length, in metres, if it has none.

@@ -10,33 +10,37 @@
 namespace altiplan {
 namespace {
 
-double at_least_zero(double value, const char* what) {
+std::string text_of(const std::string& name) {
+  return name.empty() ? "the objective" : "the objective " + name;
+}
+
+double at_least_zero(double value, const std::string& name, const char* what) {
   if (!(value >= 0)) {
-    throw PluginError(std::string("the objective violated the contract of its interface: ") + what +
-                          " is " + std::to_string(value) + ", expected a number of at least 0",
+    throw PluginError(text_of(name) + " violated the contract of its interface: " + what + " is " +
+                          std::to_string(value) + ", expected a number of at least 0",
                       Reason::contract);
   }
   return value;
 }
-
-std::string objective_text() { return "the objective"; }
 }  // namespace
 
 Objective::~Objective() = default;
 Objective::Traits Objective::do_traits() const { return {}; }
 
 double Objective::cost(const Leg& leg, double time_s, const Request& request) const {
-  return at_least_zero(attributed(objective_text, [&] { return do_cost(leg, time_s, request); }),
-                       "the cost of a leg");
+  return at_least_zero(
+      attributed([&] { return text_of(name_); }, [&] { return do_cost(leg, time_s, request); }),
+      name_, "the cost of a leg");
 }
 
 double Objective::bound(const Vec3& from, const Vec3& to, const Request& request) const {
-  const double bound =
-      at_least_zero(attributed(objective_text, [&] { return do_bound(from, to, request); }),
-                    "the bound between two places");
+  const double bound = at_least_zero(
+      attributed([&] { return text_of(name_); }, [&] { return do_bound(from, to, request); }),
+      name_, "the bound between two places");
   constexpr double kRounding = 1e-9;
   if (from == to && bound > kRounding) {
-    throw PluginError("the objective violated the contract of its interface: the bound from a " +
+    throw PluginError(text_of(name_) +
+                          " violated the contract of its interface: the bound from a " +
                           ("place to itself is " + std::to_string(bound)) + ", expected 0",
                       Reason::contract);
   }
@@ -44,9 +48,10 @@ double Objective::bound(const Vec3& from, const Vec3& to, const Request& request
 }
 
 std::vector<double> Objective::costs(const Route& route, const Request& request) const {
-  std::vector<double> terms = attributed(objective_text, [&] { return do_costs(route, request); });
+  std::vector<double> terms =
+      attributed([&] { return text_of(name_); }, [&] { return do_costs(route, request); });
   for (const double term : terms) {
-    at_least_zero(term, "the cost of a route");
+    at_least_zero(term, name_, "the cost of a route");
   }
   return terms;
 }
@@ -68,8 +73,9 @@ std::vector<double> Objective::do_costs(const Route& route, const Request& reque
 }
 
 double Objective::min_cost(const Request& request) const {
-  return at_least_zero(attributed(objective_text, [&] { return do_min_cost(request); }),
-                       "the bound of routes");
+  return at_least_zero(
+      attributed([&] { return text_of(name_); }, [&] { return do_min_cost(request); }), name_,
+      "the bound of routes");
 }
 
 double Objective::do_min_cost(const Request& request) const {

@@ -158,7 +158,7 @@ class CostedTheta : GoalSearch {
     const Vec3 there = position(v);
     const std::uint32_t p = nodes_[s].parent;
     const double known = nodes_[v].g;
-    const double by_step = g(s) + cost(s, there);
+    const double by_step = g(s) + priced(cost(s, there), there);
     const double at_least = g(p) + min_cost(position(p), there);
     double by_parent = kInfinity;
     if (at_least < known && at_least <= by_step) {

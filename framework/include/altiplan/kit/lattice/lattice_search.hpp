@@ -159,6 +159,7 @@ struct SearchStats {
   bool memory_full = false;
   bool too_long = false;  ///< route_length refused something
   std::string pruned_by;  ///< the limit on a total that refused something
+  std::optional<Vec3> unpriced{};  ///< the end of a leg that the objective has no cost for
 };
 
 inline Counters counters(const SearchStats& progress, const Lattice& lattice,
@@ -188,6 +189,10 @@ inline std::string explanation(PlanStatus status, const SearchStats& progress,
   }
   const std::string refusals = rules.refusals();
   text += refusals.empty() ? "" : "; refused moves: " + refusals;
+  if (progress.unpriced) {
+    text += "; legs without a cost by the objective left out, such as one to " +
+            request.place_text(*progress.unpriced);
+  }
   if (progress.too_long) {
     text += "; parts of the search pruned by route_length";
   }
@@ -358,13 +363,22 @@ class LatticeSearch {
   }
   /// Of the step in direction d from a, the position of cell c, to b.
   double step_cost(const Cell& c, int d, const Vec3& a, const Vec3& b) {
-    return costs_.length_alone() ? lattice_.step_length(d)
-           : means_              ? lattice_.step_length(d) * means_->at(c, d, a, b)
-                                 : costs_.leg(a, b, lattice_.step_length(d));
+    if (costs_.length_alone()) {
+      return lattice_.step_length(d);
+    }
+    return priced(means_ ? lattice_.step_length(d) * means_->at(c, d, a, b)
+                         : costs_.leg(a, b, lattice_.step_length(d)),
+                  b);
+  }
+  double priced(double cost, const Vec3& to) {
+    if (cost == kInfinity) {
+      progress_.unpriced = to;
+    }
+    return cost;
   }
   std::size_t means_bytes() const { return means_ ? means_->bytes() : 0; }
-  double link_cost(const Vec3& a, const Vec3& b, double length) const {
-    return length == 0 ? 0 : costs_.leg(a, b, length);
+  double link_cost(const Vec3& a, const Vec3& b, double length) {
+    return length == 0 ? 0 : priced(costs_.leg(a, b, length), b);
   }
   /// True if every route over the position by a path of that length is too long.
   bool too_long(double length, const Vec3& at) {

@@ -22,8 +22,8 @@ class StepMeans {
   static std::optional<StepMeans> of(const Request& request, const Lattice& lattice) {
     constexpr int kWorthIt = 3;  // levels
     const auto* mean = dynamic_cast<const MeanCost*>(request.objective.get());
-    return mean != nullptr && lattice.spec().counts[2] >= kWorthIt
-               ? std::optional(StepMeans(*mean, lattice.spec().counts))
+    return mean != nullptr && mean->is_mean() && lattice.spec().counts[2] >= kWorthIt
+               ? std::optional(StepMeans(*mean, request.objective->name(), lattice.spec().counts))
                : std::nullopt;
   }
 
@@ -39,8 +39,8 @@ class StepMeans {
  private:
   static constexpr std::size_t kLevel = 9;  // directions that differ on the level
 
-  StepMeans(const MeanCost& mean, const Cell& counts)
-      : mean_(mean), columns_east_(std::size_t(counts[0])) {
+  StepMeans(const MeanCost& mean, std::string name, const Cell& counts)
+      : mean_(mean), name_(std::move(name)), columns_east_(std::size_t(counts[0])) {
     const std::size_t count = kLevel * columns_east_ * std::size_t(counts[1]);
     means_.reset(count);
     bytes_ = count * sizeof(std::uint64_t);
@@ -48,17 +48,17 @@ class StepMeans {
   double learn(std::size_t index, const Vec3& a, const Vec3& b) {
     const double mean = mean_.per_metre(a, b);
     if (!(mean >= 0)) {
-      throw PluginError(
-          "the objective violated the contract of its interface: the cost of a metre "
-          "is " +
-              std::to_string(mean) + ", expected a number of at least 0",
-          Reason::contract);
+      throw PluginError("the objective " + name_ +
+                            " violated the contract of its interface: the cost of a metre is " +
+                            std::to_string(mean) + ", expected a number of at least 0",
+                        Reason::contract);
     }
     means_.at(index) = ~std::bit_cast<std::uint64_t>(mean);
     return mean;
   }
 
   const MeanCost& mean_;
+  std::string name_;
   std::size_t columns_east_;
   std::size_t bytes_;
   ScratchArray<std::uint64_t> means_;  ///< the inverted bits; 0: not asked yet

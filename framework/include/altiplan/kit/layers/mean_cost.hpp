@@ -13,5 +13,7 @@ class MeanCost {
   /// Cost per metre of straight legs from a place above or below `from` to one above or below `to`,
   /// at least 0; infinite where a leg cannot be priced.
   virtual double per_metre(const Vec3& from, const Vec3& to) const = 0;
+  /// False: the height matters after all, and per_metre must not be asked.
+  virtual bool is_mean() const { return true; }
 };
 }  // namespace altiplan::kit
