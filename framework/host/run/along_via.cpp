@@ -39,6 +39,18 @@ std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
   return iterations;
 }
 
+/// One of so many equal parts of what is left of a budget.
+Budget part_of(Budget budget, std::size_t parts) {
+  if (budget.max_iterations != Budget{}.max_iterations) {
+    budget.max_iterations /= parts;
+  }
+  if (budget.deadline) {
+    const Budget::Clock::time_point now = Budget::Clock::now();
+    budget.deadline = now + (*budget.deadline - now) / std::int64_t(parts);
+  }
+  return budget;
+}
+
 /// The vehicle's velocity at the end of a route.
 Vec3 velocity_at_end(const Route& route, double speed) {
   for (std::size_t i = route.leg_count(); i-- > 0;) {
@@ -65,7 +77,8 @@ std::size_t nearest_leg(const Route& route, const Vec3& p) {
 }
 }  // namespace
 
-PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanPart& plan_part) {
+PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytime,
+                      const PlanPart& plan_part) {
   PlanResult whole;
   std::vector<Goal> goals = via;
   goals.push_back(request.goal);
@@ -77,7 +90,9 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
     };
     PlanResult part;
     try {
-      part = plan_part(request);
+      Request section = request;
+      section.budget = anytime ? part_of(request.budget, goals.size() - i) : request.budget;
+      part = plan_part(section);
     } catch (const PluginError& error) {
       throw PluginError(on_the_way(error.what()), error.reason());
     }
@@ -111,9 +126,12 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanP
   return whole;
 }
 
-FreshVia::FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part)
-    : request_(std::move(request)), via_(std::move(via)), plan_part_(std::move(plan_part)) {
-  take(plan_along(request_, via_, plan_part_));
+FreshVia::FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part, bool anytime)
+    : request_(std::move(request)),
+      via_(std::move(via)),
+      plan_part_(std::move(plan_part)),
+      anytime_(anytime) {
+  take(plan_along(request_, via_, anytime_, plan_part_));
 }
 
 void FreshVia::take(PlanResult result) {
@@ -135,7 +153,7 @@ const PlanResult& FreshVia::do_update(const State& state, const Goal& goal,
   request_.goal = goal;
   request_.world = std::move(world);
   request_.budget = budget;
-  take(plan_along(request_, via_, plan_part_));
+  take(plan_along(request_, via_, anytime_, plan_part_));
   return result_;
 }
 }  // namespace altiplan::host

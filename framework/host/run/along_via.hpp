@@ -13,13 +13,15 @@ namespace altiplan::host {
 using PlanPart = std::function<PlanResult(const Request&)>;
 
 /// Plans start – via … – goal section by section and joins them; each section starts with the
-/// heading at the end of the previous one.
-PlanResult plan_along(Request request, const std::vector<Goal>& via, const PlanPart& plan_part);
+/// heading at the end of the previous one. Where a planner uses all of its budget (`anytime`), each
+/// section has an equal part of what is left.
+PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytime,
+                      const PlanPart& plan_part);
 
 /// A session for planners without one: plans from scratch, past the via points still ahead.
 class FreshVia final : public Session {
  public:
-  FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part);
+  FreshVia(Request request, std::vector<Goal> via, PlanPart plan_part, bool anytime);
 
  private:
   const PlanResult& do_result() const override { return result_; }
@@ -32,6 +34,7 @@ class FreshVia final : public Session {
   Request request_;
   std::vector<Goal> via_;  ///< still ahead
   PlanPart plan_part_;
+  bool anytime_;
   PlanResult result_;
   Route flown_;  ///< the last route found
 };

@@ -72,6 +72,7 @@ class Run {
   struct PlanPlugin {
     std::unique_ptr<Planner> planner;
     std::unique_ptr<LocalPlanner> local_planner;
+    bool is_anytime() const { return planner && planner->traits().anytime; }
     PlanPart part() const {
       return [this](const Request& request) {
         return planner ? planner->plan(request) : roll_out(*local_planner, request);

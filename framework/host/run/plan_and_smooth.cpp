@@ -93,7 +93,7 @@ std::unique_ptr<Session> Run::begin_session(const PlanPlugin& made, const Reques
   if (made.planner && mission_.via.empty()) {
     return made.planner->begin(request);
   }
-  return std::make_unique<FreshVia>(request, mission_.via, part_of(made));
+  return std::make_unique<FreshVia>(request, mission_.via, part_of(made), made.is_anytime());
 }
 
 PlanPart Run::part_of(const PlanPlugin& made) const {
@@ -180,7 +180,7 @@ void Run::plan(const StepEntry& entry, StepResult& step) {
       request.goal.position = task_->goal();
     }
     if (!flown_with(entry.id)) {
-      PlanResult result = plan_along(request, mission_.via, part_of(made));
+      PlanResult result = plan_along(request, mission_.via, made.is_anytime(), part_of(made));
       result.budget_hit = result.budget_hit || (task_ && task_->order().budget_hit);
       return explained(std::move(result), request);
     }
@@ -214,7 +214,7 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
   std::size_t from = 0;
   std::size_t piece = 0;
   std::string messages;  // one message per section: a smoother sees only its own
-  PlanResult whole = plan_along(request, fixed, [&](const Request& part) {
+  PlanResult whole = plan_along(request, fixed, false, [&](const Request& part) {
     const Route section = before.part(from, cuts[piece]);
     PlanResult result;
     const bool is_stop = section.leg_count() == 1 && section.leg(0).waits();  // of a task
