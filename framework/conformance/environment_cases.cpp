@@ -32,6 +32,9 @@ LayerAnswers ask(const Environment& layer, const std::vector<Probe::AskedLeg>& l
       answers.numbers.push_back(ground->gap(a, b));
       answers.numbers.push_back(ground->gap_max(a, b));
     }
+    if (const Field* field = layer.field()) {
+      answers.numbers.push_back(field->value(a).value_or(-1));
+    }
     answers.yes.push_back(layer.blocked(a, b, r));
     double sum = 0;
     layer.near(a, r, [&](const Nearby& nearby) { sum += nearby.distance + nearby.point.sum(); });
@@ -283,6 +286,9 @@ void odd_places(const EnvironmentBench& bench, Report&) {
       (void)layer.blocked(p, odd, 1);
       (void)layer.blocked(odd, odd, 1);
       layer.near(odd, 10, [](const Nearby&) {});
+      if (layer.field() != nullptr) {
+        (void)layer.field()->value(odd);
+      }
       if (ground != nullptr) {
         (void)ground->height(odd.x(), odd.y());
         (void)ground->gap(p, odd);
@@ -297,6 +303,20 @@ void odd_places(const EnvironmentBench& bench, Report&) {
     (void)ground->slope(Box{});
     (void)ground->slope(Box::empty());
   }
+}
+
+/// What is no number of at least 0 throws.
+void field_values(const EnvironmentBench& bench, Report& report) {
+  Probe probe(bench, "field");
+  const Field* field = probe.layer().field();
+  bool any_has_value = field == nullptr;
+  for (int n = 0; field != nullptr && n < 300 * bench.options.rounds; ++n) {
+    any_has_value |= field->value(probe.point()).has_value();
+  }
+  report.expect(any_has_value, kEnvironmentField, [&] {
+    return "there is a field, and no value was found between " + text(probe.volume().min) +
+           " and " + text(probe.volume().max);
+  });
 }
 
 void kin(const EnvironmentBench& bench, Report& report) {
@@ -355,6 +375,8 @@ Cases environment_cases(const EnvironmentFactory& make, const Options& options,
                         {"bounds_hold_what_is_seen_from_outside", bounds_from_outside},
                         {"odd_places_do_no_harm", odd_places},
                         {"kin", kin}});
+  all.push_back(make_case("field_has_values", kEnvironmentField,
+                          [bench](Report& report) { field_values(bench, report); }));
   for (const auto& more : {environment_ground_cases(bench), environment_grid_cases(bench),
                            environment_body_cases(bench)}) {
     all.insert(all.end(), more.begin(), more.end());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "altiplan/field.hpp"
 #include "altiplan/ground.hpp"
 #include "altiplan/height_field.hpp"
 #include "report.hpp"
@@ -32,6 +33,8 @@ inline constexpr const char* kEnvironmentRaster =
     "Environment contract 6: rasterize never leaves a cell free that the grid's rule blocks";
 inline constexpr const char* kEnvironmentBody =
     "Environment contract 7: meets where layer and body overlap, free beyond the tolerance";
+inline constexpr const char* kEnvironmentField =
+    "Field contract 2: values are at least 0 and finite, or none";
 inline constexpr const char* kEnvironmentNear =
     "Environment::near: each obstacle in reach, once, in agreement with clearance";
 inline constexpr const char* kEnvironmentBounds =

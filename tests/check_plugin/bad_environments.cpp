@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 
+#include "altiplan/field.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/swept_volume.hpp"
 #include "bad_entries.hpp"
@@ -32,11 +33,12 @@ struct Spoils {
   std::optional<Box> bounds;
   std::optional<double> slack;
   std::function<bool(const SweptVolume&)> meets;
+  std::function<std::optional<double>(const Vec3&)> field;
   LayerInfo info;
 };
 
 template <void (*kSpoil)(Spoils&)>
-class Spoilt final : public Environment {
+class Spoilt final : public Environment, public Field {
  public:
   template <class Params>
   Spoilt(const Params&, const Site&) {
@@ -66,6 +68,8 @@ class Spoilt final : public Environment {
   }
   double do_over_approximation() const override { return spoils_.slack.value_or(0); }
   const LayerInfo& do_info() const override { return spoils_.info; }
+  const Field* do_field() const override { return spoils_.field ? this : nullptr; }
+  std::optional<double> do_value(const Vec3& p) const override { return spoils_.field(p); }
   bool do_meets(const SweptVolume& volume) const override {
     return spoils_.meets ? spoils_.meets(volume) : sound().meets(volume);
   }
@@ -74,6 +78,19 @@ class Spoilt final : public Environment {
 };
 
 void nothing(Spoils&) {}
+void with_field(Spoils& s) {
+  s.field = [](const Vec3& p) { return std::optional(sound().clearance(p) > 0 ? 1.0 : 2.0); };
+}
+void negative_field(Spoils& s) {
+  s.field = [](const Vec3& p) { return std::optional(sound().clearance(p)); };
+}
+void field_without_values(Spoils& s) {
+  s.field = [](const Vec3&) { return std::optional<double>(); };
+}
+void field_that_counts(Spoils& s) {
+  static std::atomic<int> asked = 0;
+  s.field = [](const Vec3&) { return std::optional<double>(++asked); };
+}
 using Sound = Spoilt<nothing>;
 
 void drifts(Spoils& s) {
@@ -284,6 +301,14 @@ ALTIPLAN_PLUGIN(Environment, "flat_cells", Spoilt<flat_cells>, NoParams,
                 "its native cells have no extent")
 ALTIPLAN_PLUGIN(Environment, "bent_frame", Spoilt<bent_frame>, NoParams,
                 "its frame does not bring a place back")
+ALTIPLAN_PLUGIN(Environment, "with_field", Spoilt<with_field>, NoParams,
+                "nothing is wrong with it, nor with its field")
+ALTIPLAN_PLUGIN(Environment, "negative_field", Spoilt<negative_field>, NoParams,
+                "values of its field are negative")
+ALTIPLAN_PLUGIN(Environment, "field_without_values", Spoilt<field_without_values>, NoParams,
+                "its field has no value anywhere")
+ALTIPLAN_PLUGIN(Environment, "field_that_counts", Spoilt<field_that_counts>, NoParams,
+                "values of its field depend on how often it was asked")
 ALTIPLAN_PLUGIN(Environment, "empty", Empty, NoParams, "there is nothing in it")
 ALTIPLAN_BAD_ENTRIES(Environment, Sound, NoParams)
 ALTIPLAN_BAD_PROCESSES(Environment, Spoilt<does<changes_locale>>, Spoilt<does<prints>>,

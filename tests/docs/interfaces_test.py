@@ -14,7 +14,7 @@ import textwrap
 SOURCE = pathlib.Path(sys.argv[1])
 PAGES = SOURCE / "docs/interfaces"
 TEMPLATES = SOURCE / "tools/altiplan/templates"
-BESIDE = {"environment": ["ground"]}  # further headers of a kind, with contracts of their own
+BESIDE = {"environment": ["ground", "field"]}  # further headers of a kind, with contracts of their own
 KINDS = sorted(folder.name for folder in TEMPLATES.iterdir() if folder.name not in ("shared", "python"))
 MARK = re.compile(r"^(<!-- (contract of|example|test|code) (\w+) -->\n).*?^(<!-- /\w+ -->)$", re.M | re.S)
 COMMENT_AND_CLASS = re.compile(r"((?:^ *///.*\n)+)(?:class|struct) (?:ALTIPLAN_API )?(\w+)", re.M)

@@ -49,7 +49,7 @@ WRONG = {  # what build does: what is said
     "return [{'sphere': {'at_m': (0, 0, 0), 'radius_m': float('nan')}}]": "expected a finite number",
     "return [{'sphere': {'at_m': (0, 0, 0), 'radius_m': object()}}]": "found object",
     "return [{'sphere': {'at_lonlat': (7, 50, 10), 'radius_m': 5}}]": "the world has no geographic position",
-    "return altiplan.Ground([[1, 2]], 10)": "expected 2 rows and columns or more",
+    "return altiplan.Ground([[1, 2]], 10)": "expected 2 posts or more along each axis",
     "return altiplan.Ground([[1, 2], [1]], 10)": "expected rows of the same length",
     "return altiplan.Ground([1, 2], 10)": "heights: expected numbers in 2 dimensions",
     "return altiplan.Ground([[1, 2], [1, float('nan')]], 10)": "expected a finite number at each post",

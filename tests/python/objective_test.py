@@ -35,7 +35,7 @@ steps:
 WRONG = {  # what build does: what is said
     "return None": "TypeError: build: expected a Field, found NoneType",
     "return altiplan.Ground([[1, 2], [1, 2]], 10)": "TypeError: build: expected a Field, found Ground",
-    "return altiplan.Field([[1, 2]], 10)": "Field: expected 2 rows and columns or more",
+    "return altiplan.Field([[1, 2]], 10)": "Field: expected 2 posts or more along each axis",
     "return altiplan.Field([[1, 2], [1, -1]], 10)": "values: expected 0 to 1e+09 at each post, or NaN",
     "return altiplan.Field([[1, 2], [1, float('inf')]], 10)": "values: expected 0 to 1e+09",
     "return altiplan.Field([[float('nan')] * 2] * 2, 10)": "values: expected a number at one post or more",
@@ -68,6 +68,18 @@ class Objectives(ScriptCase):
         self.assertEqual(own["bound"], of_file["bound"])
         self.assertGreater(len(own["steps"][0]["route"]), 3)  # it goes around
         self.assertEqual(self.workers(), [])
+
+    def test_a_price_by_height(self):
+        self.objective("""levels = [[[self.factor * one] * 2] * 2 for one in (9, 9, 1, 1)]
+return altiplan.Field(levels, (1000, 1000, 70))""")
+        result = self.run_of("{tested: {}}")
+        self.assertEqual(max(z for _, _, z in result["steps"][0]["route"]), 150)
+        self.assertLess(result["cost"], 900 * (1 + 8 * 40 / 70))  # as straight at 100 m
+        self.assertGreaterEqual(result["bound"], 900 - 1e-6)
+        self.objective("return altiplan.Field([[[1, 1], [1, 1]]], 100)")
+        self.assertIn("expected 2 posts or more along each axis",
+                      self.altiplan("run", self.write("p.yaml", PIPELINE.format(objective="{tested: {}}")),
+                                    code=4).stderr)
 
     def test_parameters_and_sums(self):
         self.objective(FIELD)

@@ -141,6 +141,11 @@ std::unique_ptr<Objective> make_objective(std::string_view name, std::string_vie
   Site site;
   site.before = &before;
   site.frame = before.frame();
+  return make_objective(name, yaml, site);
+}
+
+std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
+                                          const Site& site) {
   const Value value = parameters(yaml);
   return entry("objective", name).objective(&value, site);
 }

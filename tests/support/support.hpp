@@ -32,6 +32,8 @@ std::unique_ptr<Environment> make_environment(std::string_view name, std::string
 std::unique_ptr<Environment> make_environment(std::string_view name, std::string_view yaml = "{}");
 std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml = "{}",
                                           const Frame& frame = {});
+std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
+                                          const Site& site);
 /// One that looks at the layers of a world.
 std::unique_ptr<Objective> make_objective(std::string_view name, std::string_view yaml,
                                           const World& before);

@@ -9,6 +9,7 @@
 #include "altiplan/attributed.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/error.hpp"
+#include "altiplan/field.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/iso_time.hpp"
 #include "host/base/shapes.hpp"
@@ -266,7 +267,7 @@ void warn_of_distant_layers(Mission& mission) {
       mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin + ") at " + extent(box) +
                                  " does not touch the volume at " + extent(mission.site.volume) +
                                  ": check its position");
-    } else if (box.is_empty()) {
+    } else if (box.is_empty() && layer.environment->field() == nullptr) {
       const std::vector<std::string>& notes = layer.environment->info().notes;
       mission.warnings.push_back("'" + layer.id + "' (" + layer.plugin + ") holds nothing here" +
                                  (notes.empty() ? "" : ": " + notes.back()));

@@ -122,7 +122,7 @@ std::unique_ptr<Environment> ground_of(const Json& reported, const std::vector<d
                                        const Site& site) {
   HeightField field(reported.at("origin_m").get<std::array<double, 2>>(),
                     reported.at("spacing_m").get<std::array<double, 2>>(),
-                    reported.at("columns").get<int>(), reported.at("rows").get<int>(),
+                    reported.at("counts").at(0).get<int>(), reported.at("counts").at(1).get<int>(),
                     {numbers.begin(), numbers.end()});
   return std::make_unique<ScriptGround>(std::move(field), site.vehicle.radius_m);
 }
@@ -140,11 +140,14 @@ std::unique_ptr<Objective> script_objective(ScriptSource source, const Site& sit
   const ScriptMessage built = built_by(std::move(source), site);
   const Json& field = built.head.at("field");
   const Json& elsewhere = field.at("elsewhere");
+  kit::Posts posts;  // on one level where the field has no third axis
+  for (std::size_t axis = 0; axis < field.at("counts").size(); ++axis) {
+    posts.counts[axis] = field["counts"][axis].get<int>();
+    posts.step[axis] = field.at("spacing_m").at(axis).get<double>();
+    posts.origin[axis] = field.at("origin_m").at(axis).get<double>();
+  }
   return std::make_unique<kit::FieldIntegral>(
-      kit::ScalarField(field.at("origin_m").get<std::array<double, 2>>(),
-                       field.at("spacing_m").get<std::array<double, 2>>(),
-                       field.at("columns").get<int>(), field.at("rows").get<int>(),
-                       {built.numbers.begin(), built.numbers.end()},
+      kit::ScalarField(posts, {built.numbers.begin(), built.numbers.end()},
                        elsewhere.is_null() ? kInfinity : elsewhere.get<double>()),
       field.at("unit").get<std::string>());
 }

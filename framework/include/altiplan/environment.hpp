@@ -13,6 +13,7 @@
 
 namespace altiplan {
 
+class Field;
 class Ground;
 class SweptVolume;
 
@@ -65,6 +66,8 @@ class ALTIPLAN_API Environment {
   double over_approximation() const { return do_over_approximation(); }
   /// The layer's ground, or null; like info(), constant for the layer's lifetime.
   const Ground* ground() const { return do_ground(); }
+  /// The layer's field for objectives, or null; constant likewise.
+  const Field* field() const { return do_field(); }
   const LayerInfo& info() const { return do_info(); }
   /// Centre of a cell in the indexing of the layer's file.
   std::optional<Vec3> cell_centre(const std::array<double, 3>& cell) const {
@@ -86,6 +89,8 @@ class ALTIPLAN_API Environment {
   virtual double do_over_approximation() const;
   /// Default: null. A layer with ground implements Ground as a second base, or owns one.
   virtual const Ground* do_ground() const;
+  /// Default: null, as of do_ground.
+  virtual const Field* do_field() const;
   /// Default: empty. A layer with other information stores it.
   virtual const LayerInfo& do_info() const;
   virtual std::optional<Vec3> do_cell_centre(const std::array<double, 3>& cell) const;

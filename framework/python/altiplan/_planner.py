@@ -227,12 +227,13 @@ class Ground(typing.NamedTuple):
 
 
 class Field(typing.NamedTuple):
-    """Costs of a metre of flight at posts, at least 0, bilinear between them: values[j, i] is i
-    spacings east and j spacings north of the origin; NaN where there is none. `elsewhere` is the cost
+    """Costs of a metre of flight at posts, at least 0, linear along each axis between them:
+    values[j, i] is i spacings east and j spacings north of the origin, the same at all heights;
+    values[k, j, i] is k spacings above it as well; NaN where there is none. `elsewhere` is the cost
     where there are none; None: routes do not lead there. `unit` is that of a cost times a metre."""
-    values: typing.Any  # rows from the south, of at least 2 posts each
-    spacing_m: typing.Any  # one number, or (east, north)
-    origin_m: typing.Tuple[float, float] = (0.0, 0.0)  # of the post in the south west
+    values: typing.Any  # (levels from the lowest, of) rows from the south, of at least 2 posts each
+    spacing_m: typing.Any  # one number, or (east, north), or (east, north, up)
+    origin_m: typing.Any = 0.0  # of the first post, likewise
     elsewhere: typing.Optional[float] = None
     unit: str = ""
 

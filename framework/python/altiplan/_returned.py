@@ -83,30 +83,39 @@ def _flat(values: typing.Any, shape: typing.Sequence[int], name: str) -> "array[
     return flat
 
 
-def _posts(posts: typing.Any, values: typing.Any, name: str) -> typing.Tuple[_Json, "array[float]"]:
-    """Where the posts of Ground or Field lie, and their values, which are called `name`."""
-    rows, columns = shape = _shape(values, 2, name)
+def _posts(posts: typing.Any, values: typing.Any, name: str, axes: int) -> _Answer:
+    """Where the posts of Ground or Field lie, along each axis, and their values, which are called
+    `name`."""
+    shape = _shape(values, axes, name)
     flat = _flat(values, shape, name)
-    spacing = numbers_or_one(posts.spacing_m, 2, "spacing_m")
-    if rows < 2 or columns < 2 or min(spacing) <= 0:
-        raise ValueError(f"{type(posts).__name__}: expected 2 rows and columns or more, and spacings "
-                         f"above 0, found {rows} x {columns} posts of {spacing} m")
-    return {"rows": rows, "columns": columns, "spacing_m": spacing,
-            "origin_m": numbers_or_one(posts.origin_m, 2, "origin_m")}, flat
+    spacing = numbers_or_one(posts.spacing_m, axes, "spacing_m")
+    if min(shape) < 2 or min(spacing) <= 0:
+        raise ValueError(f"{type(posts).__name__}: expected 2 posts or more along each axis, and spacings "
+                         f"above 0, found {' x '.join(map(str, shape))} posts of {spacing} m")
+    return {"counts": shape[::-1], "spacing_m": spacing,
+            "origin_m": numbers_or_one(posts.origin_m, axes, "origin_m")}, flat
 
 
 def _ground(ground: typing.Any) -> _Answer:
-    posts, heights = _posts(ground, ground.heights, "heights")
+    posts, heights = _posts(ground, ground.heights, "heights", 2)
     if not all(-_HIGHEST_M <= height <= _HIGHEST_M for height in heights):
         raise ValueError(f"heights: expected a finite number at each post, up to {_HIGHEST_M:.0f} m")
     return {"ground": posts}, heights
+
+
+def _axes(values: typing.Any) -> int:
+    """3 of values in three dimensions, else 2."""
+    if hasattr(values, "ndim"):  # numpy's arrays
+        return 3 if values.ndim == 3 else 2
+    row = values[0] if hasattr(values, "__len__") and len(values) else None
+    return 3 if hasattr(row, "__len__") and len(row) and hasattr(row[0], "__len__") else 2
 
 
 def field(returned: typing.Any) -> _Answer:
     """What `build` of an objective returns."""
     if not isinstance(returned, _planner.Field):
         raise TypeError(f"build: expected a Field, found {type(returned).__name__}")
-    posts, values = _posts(returned, returned.values, "values")
+    posts, values = _posts(returned, returned.values, "values", _axes(returned.values))
     if not all(0 <= value <= _HIGHEST_COST or math.isnan(value) for value in values):
         raise ValueError(f"values: expected 0 to {_HIGHEST_COST:g} at each post, or NaN")
     if all(map(math.isnan, values)):

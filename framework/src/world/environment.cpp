@@ -127,6 +127,7 @@ void Environment::do_rasterize(VoxelGrid& grid) const {
 
 double Environment::do_over_approximation() const { return 0.05; }
 const Ground* Environment::do_ground() const { return nullptr; }
+const Field* Environment::do_field() const { return nullptr; }
 const LayerInfo& Environment::do_info() const {
   static const LayerInfo kNothing;
   return kNothing;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "altiplan/field.hpp"
 #include "altiplan/kit/layers/obstacle_set.hpp"
 #include "altiplan/plugin.hpp"
 #include "altiplan/world.hpp"
@@ -14,6 +15,7 @@ struct Params {
   std::optional<double> range_m;
   std::optional<RadarEquation> equation;
   bool masking = false;
+  bool blocks = true;
 
   void describe(Fields& f) {
     f.point(at).required().doc("position of the antenna");
@@ -23,6 +25,8 @@ struct Params {
         .doc("detection range; alternative to `equation`");
     f("equation", equation).doc("the quantities of the radar equation, paper 000, eq. (1)");
     f("masking", masking).doc("ground between the antenna and a point masks the point");
+    f("blocks", blocks)
+        .doc("false: nothing is blocked; objectives price the detection (exposure: {layer: …})");
     f.check(range_m.has_value() != equation.has_value(), "give either range_m or equation");
   }
 };
@@ -38,21 +42,25 @@ Vec3 antenna(const Params& params, const Site& site) {
   return at;
 }
 
-/// A ball around the antenna; with masking, without the parts hidden by the ground.
+/// A ball around the antenna; with masking, without the parts hidden by the ground. Where it does
+/// not block, there is no ball. Its field is the echo against the noise and itself: the echo falls
+/// with the fourth power of the distance (eq. (1)), and both are equal at the range.
 ///
 /// A point's line of sight has the gap g, its minimum height above the ground: the point is covered
 /// if g >= 0. Moving the point by d changes g by at most √(1 + s²) d, s the steepest slope of the
 /// ground, so -g / √(1 + s²) is a 1-Lipschitz lower bound of the distance to the covered volume.
-class Radar final : public Environment {
+class Radar final : public Environment, public Field {
  public:
   Radar(const Params& params, const Site& site)
       : at_(antenna(params, site)),
         range_(params.range_m ? *params.range_m : params.equation->range_m()),
-        ball_({Sphere{at_, range_}}) {
+        ball_(params.blocks ? std::vector<Shape>{Sphere{at_, range_}} : std::vector<Shape>{}) {
     if (params.masking) {
       find_ground(*site.before);
     }
-    info_.threats = {{at_, range_, "radar", ""}};
+    if (params.blocks) {
+      info_.threats = {{at_, range_, "radar", ""}};
+    }
     info_.notes = {note()};
   }
 
@@ -79,7 +87,7 @@ class Radar final : public Environment {
       throw Error(height ? "the antenna is below the ground"
                          : "masking: there is no ground below the antenna");
     }
-    const double slope = ground_->slope(ball_.bounds().intersected(area_));
+    const double slope = ground_->slope(Box{at_, at_}.grown(range_).intersected(area_));
     steepness_ = std::hypot(1, slope);
     if (!std::isfinite(slope)) {
       ground_ = nullptr;  // the hidden volume is unknown
@@ -95,6 +103,12 @@ class Radar final : public Environment {
     }
     const double hidden = -ground_->gap(at_, p) / steepness_;
     return std::min(to_edge, std::max(hidden, -to_edge));
+  }
+
+  const Field* do_field() const override { return this; }
+  std::optional<double> do_value(const Vec3& p) const override {
+    const double part = (p - at_).norm() / range_;
+    return ground_ != nullptr && to_covered(p) > 0 ? 0 : 1 / (1 + std::pow(part, 4));
   }
 
   Box do_bounds() const override { return ball_.bounds(); }

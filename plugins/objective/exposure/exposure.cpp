@@ -11,7 +11,9 @@
 #include "altiplan/map_system.hpp"
 #include "altiplan/objective.hpp"
 #include "altiplan/plugin.hpp"
+#include "price.hpp"
 #include "raster.hpp"
+#include "sampled.hpp"
 
 namespace {
 using namespace altiplan;
@@ -19,12 +21,13 @@ using namespace altiplan;
 struct Params {
   Path file;
   std::string crs;
+  exposure::Sampled sampled;
+  exposure::Price price;
   std::optional<double> elsewhere;
   std::string unit;
 
   void describe(Fields& f) {
     f("file", file)
-        .required()
         .doc(
             "values per metre, at least 0, at the centres of cells: a GeoTIFF of one band, or an "
             "ESRI ASCII grid");
@@ -32,12 +35,30 @@ struct Params {
         .doc(
             "coordinate system (EPSG:4326) of a file that names none; default: the world's "
             "metres");
+    f("layer", sampled.layer)
+        .doc("alternatively: the field of the layer with this id, such as a radar's detection");
+    f("of", sampled.of)
+        .one_of({"clearance", "height_above_ground", "wind_speed"})
+        .doc("alternatively: a field of the world: distance to obstacles (m), height (m), m/s");
+    f("cell_m", sampled.cell_m)
+        .unit("m")
+        .at_least(0.001)
+        .doc("spacing on each axis of the places where `layer` and `of` are asked; linear between");
+    f("price", price.pairs)
+        .doc(
+            "pairs of a value of the field and its price per metre, at least 0, linear between "
+            "them and constant beyond; default: the value itself");
     f("elsewhere", elsewhere)
         .at_least(0)
         .doc(
-            "value beyond the file's cells and beside those without one; default: routes do not "
-            "lead there");
-    f("unit", unit).doc("unit of a value times a metre, for people");
+            "price beyond the file's cells and beside places without a value; default: routes do "
+            "not lead there");
+    f("unit", unit).doc("unit of a price times a metre, for people");
+    f.check(int(!file.text.empty()) + int(!sampled.layer.empty()) + int(!sampled.of.empty()) == 1,
+            "expected one of file, layer and of");
+    f.check(price.is_in_order(), "expected price as pairs with ascending values, at least 0 each");
+    f.check(sampled.of.empty() || sampled.of == "wind_speed" || !price.pairs.empty(),
+            "with this field expected price: its values are no prices");
   }
 };
 
@@ -81,7 +102,7 @@ void place(exposure::Raster& raster, const Frame& frame) {
   raster.step = step;
 }
 
-kit::ScalarField field_of(const Params& params, const Frame& frame) {
+kit::ScalarField from_file(const Params& params, const Frame& frame) {
   try {
     const std::string kind = std::filesystem::path(params.file.text).extension().string();
     const bool is_tiff = kind == ".tif" || kind == ".tiff";
@@ -91,21 +112,31 @@ kit::ScalarField field_of(const Params& params, const Frame& frame) {
       raster.crs = params.crs;
     }
     place(raster, frame);
+    params.price.apply(raster.values);
     exposure::expect_costs(raster);
-    return {raster.south_west,        raster.step,
-            raster.columns,           raster.rows,
-            std::move(raster.values), params.elsewhere.value_or(kInfinity)};
+    return {{{raster.south_west[0], raster.south_west[1], 0},
+             {raster.step[0], raster.step[1], 1},
+             {raster.columns, raster.rows, 1}},
+            std::move(raster.values),
+            params.elsewhere.value_or(kInfinity)};
   } catch (const Error& error) {
     throw ParameterError("file", params.file.text + ": " + error.what());
   }
 }
 
+kit::ScalarField field_of(const Params& params, const Site& site) {
+  return params.file.text.empty()
+             ? params.sampled.field(site, params.price, params.elsewhere.value_or(kInfinity))
+             : from_file(params, site.frame);
+}
+
 class Exposure final : public kit::FieldIntegral {
  public:
   Exposure(const Params& params, const Site& site)
-      : FieldIntegral(field_of(params, site.frame), params.unit) {}
+      : FieldIntegral(field_of(params, site), params.unit) {}
 };
 }  // namespace
 
-ALTIPLAN_PLUGIN(Objective, "exposure", Exposure, Params,
-                "A field of values in a file, such as risk, integrated along the route")
+ALTIPLAN_PLUGIN(
+    Objective, "exposure", Exposure, Params,
+    "A field, such as risk from a file or a radar's detection, integrated along the route")

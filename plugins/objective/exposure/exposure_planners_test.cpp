@@ -39,7 +39,18 @@ class Mixed final : public Objective {
   std::shared_ptr<const Objective> altitude_;
 };
 
-/// Among balls over a field; the objective by turns: none, exposure, altitude, the sum.
+/// Of what the balls leave: prices by clearance, of a world that stays alive meanwhile.
+std::shared_ptr<const Objective> by_clearance(const Request& request) {
+  Site site;
+  site.before = request.world.get();
+  site.volume = request.volume;
+  return testing::make_objective(
+      "exposure", "{of: clearance, cell_m: [13, 11, 9], price: [[0, 6], [12, 1], [40, 0.2]]}",
+      site);
+}
+
+/// Among balls over a field; the objective by turns: none, exposure, altitude, the sum, some
+/// by the clearance.
 Request random_request(SplitMix64& random, int number) {
   const auto centre = [&](int cells) { return kCell * (random.integer(0, cells - 1) + 0.5); };
   std::vector<Shape> balls;
@@ -57,7 +68,8 @@ Request random_request(SplitMix64& random, int number) {
   const std::shared_ptr<const Objective> altitude = testing::make_objective("altitude");
   const std::shared_ptr<const Objective> all[] = {nullptr, exposure, altitude,
                                                   std::make_shared<Mixed>(exposure, altitude)};
-  request.objective = all[number % 4];
+  request.objective =
+      number % 16 == 2 || number % 16 == 9 ? by_clearance(request) : all[number % 4];
   return request;
 }
 
