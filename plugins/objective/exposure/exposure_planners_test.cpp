@@ -176,6 +176,38 @@ TEST(Objectives, OtherPlannersKeepTheBoundAndApproachIt) {
   EXPECT_GT(solved, 60);
 }
 
+TEST(Objectives, TurnsOfHybridAStarCostLessThanItsShortestRoute) {
+  SplitMix64 random(19);
+  int solved = 0;
+  double by_objective = 0;
+  double by_length = 0;
+  for (int world = 0; world < 40; ++world) {
+    Request request = random_request(random, world);
+    if (impossible_ends(request) || !request.objective) {
+      continue;
+    }
+    request.limits.max_climb = radians(30);
+    Request shortest = request;
+    shortest.objective = nullptr;
+    const auto planner = make_planner("hybrid_astar", "{cell_m: 5, radius_m: 6}");
+    const PlanResult result = planner->plan(request);
+    const PlanResult plain = planner->plan(shortest);
+    const double plain_cost =
+        plain.status == PlanStatus::solved ? cost_of(plain.route, request) : kInfinity;
+    if (result.status != PlanStatus::solved || plain_cost == kInfinity) {
+      continue;
+    }
+    ++solved;
+    EXPECT_TRUE(check(result.route, request).ok());
+    const double cost = cost_of(result.route, request);
+    EXPECT_LE(min_cost(request), cost * (1 + 1e-9));
+    by_objective += cost;
+    by_length += plain_cost;
+  }
+  EXPECT_GT(solved, 15);
+  EXPECT_LT(by_objective, 0.9 * by_length);
+}
+
 TEST(Objectives, SmoothersNeverRaiseTheCost) {
   SplitMix64 random(13);
   int changed = 0;
@@ -201,7 +233,7 @@ TEST(Objectives, SmoothersNeverRaiseTheCost) {
 TEST(Objectives, PlannersThatMinimiseLengthRefuse) {
   SplitMix64 random(17);
   Request request = random_request(random, 1);
-  for (const char* planner : {"jps", "rrt", "hybrid_astar", "ant_colony", "dstar_lite"}) {
+  for (const char* planner : {"jps", "rrt", "sipp", "ant_colony", "dstar_lite"}) {
     const PlanResult result = make_planner(planner)->plan(request);
     EXPECT_EQ(result.status, PlanStatus::invalid_problem) << planner;
     EXPECT_NE(result.message.find("minimises length alone, not an objective"), std::string::npos)

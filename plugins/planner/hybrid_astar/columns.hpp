@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "altiplan/kit/layers/mean_cost.hpp"
 #include "altiplan/kit/sampling/leg_rules.hpp"
 #include "heap.hpp"
 
@@ -52,6 +53,9 @@ class Columns {
 
   /// Metres through the air to the goal; infinite if no columns lead there.
   double operator()(const Vec3& p) {
+    if (request_.objective) {
+      return by_objective(p);
+    }
     const double radius = request_.goal.loiter ? request_.goal.loiter->radius : 0;
     // The ends lie anywhere in their columns, and beside their place on a loiter circle.
     const double spare = 2 * std::numbers::sqrt2 * cell_ +
@@ -146,7 +150,8 @@ class Columns {
       return;
     }
     for_neighbours(at, [&](int next, int k) {
-      const double distance = column.distance + steps_[std::size_t(k)];
+      const double distance =
+          column.distance + (request_.objective ? step_cost(next, at) : steps_[std::size_t(k)]);
       Column& other = columns_[std::size_t(next)];
       if (distance < other.distance && !other.is_closed) {
         other.distance = distance;
@@ -163,6 +168,9 @@ class Columns {
     const double y = rows;
     const double longer = std::max(std::abs(x), std::abs(y));
     const double shorter = std::min(std::abs(x), std::abs(y));
+    if (request_.objective) {
+      return 0;
+    }
     if (request_.wind.is_calm()) {
       const double length = cell_ * (longer + (std::numbers::sqrt2 - 1) * shorter);
       const double radius = request_.start.loiter ? request_.start.loiter->radius : 0;
@@ -190,6 +198,33 @@ class Columns {
                              : ground_speed(leg, request_.air_speed(), layer.velocity).value_or(0));
     }
     return fastest > 0 ? run / fastest * request_.air_speed() : kInfinity;
+  }
+
+  /// Cost to the goal by the objective, as through the middles of columns, but no less than its
+  /// bound.
+  double by_objective(const Vec3& p) {
+    const int column = index(p);
+    Vec3 middle = centre(column);
+    middle.z() = p.z();
+    const double over_columns =
+        from_column(column) - request_.objective->cost(Leg::straight(p, middle), 0, request_);
+    const bool is_point = request_.goal.tolerance_m == 0 && !request_.goal.loiter;
+    return std::max(over_columns,
+                    is_point ? request_.objective->bound(p, request_.goal.position, request_) : 0);
+  }
+  /// Of a step from column to column, at the height where it costs least.
+  double step_cost(int from, int to) const {
+    Vec3 a = centre(from);
+    Vec3 b = centre(to);
+    const auto [low, high] = heights(a.x(), a.y());
+    const auto* mean = dynamic_cast<const kit::MeanCost*>(request_.objective.get());
+    const int count = mean != nullptr && mean->is_mean() ? 1 : kHeights;
+    double minimum = kInfinity;
+    for (int k = 0; k < count; ++k) {
+      a.z() = b.z() = low + (high - low) * k / kHeights;
+      minimum = std::min(minimum, request_.objective->cost(Leg::straight(a, b), 0, request_));
+    }
+    return minimum;
   }
 
   /// The columns that lead to this one, and those beside them that are closed to the vehicle.

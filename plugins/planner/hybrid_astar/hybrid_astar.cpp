@@ -87,6 +87,7 @@ class HybridAstar final : public Planner {
   Traits do_traits() const override {
     Traits traits;
     traits.loiters = true;
+    traits.objectives = true;
     return traits;
   }
 

@@ -64,6 +64,7 @@ class Search {
   static constexpr int kLoiterPoses = 64;
   /// Poses that lead to the goal, if there are so many, do so from anywhere.
   static constexpr std::size_t kManyApproaches = 2048;
+  static constexpr double kChordTurn = 0.2;             ///< radians of a turn that a chord prices
   static constexpr std::uint64_t kManyExpanded = 5000;  ///< for a search that finds nothing
 
   /// A continuous pose, reached by one piece from its parent.
@@ -138,7 +139,9 @@ class Search {
                              node.pose.position, f});
       }
       note_nearest(node.pose.position);
-      if (is_time_for_a_shot(f - node.g)) {
+      if (is_time_for_a_shot(request_.objective
+                                 ? (node.pose.position - request_.goal.position).norm()
+                                 : f - node.g)) {
         shoot(at, node);
       }
       grow(at, node);
@@ -176,7 +179,7 @@ class Search {
     next.parent = at;
     const Leg leg = leg_of(node, next);
     next.pose = steering_.pose_on(leg, 1, node.pose.heading + turn);
-    next.g = node.g + length_ * std::hypot(1, gradient);
+    next.g = node.g + (request_.objective ? cost(leg) : length_ * std::hypot(1, gradient));
     const Index known = closed_.find(key(next.pose));
     if ((known != kNone && next.g >= nodes_[known].g) || !request_.volume.contains(leg.to)) {
       return;
@@ -193,8 +196,26 @@ class Search {
     return steering_.piece(from.pose, length_, to.turn, to.gradient);
   }
 
+  double cost(const Leg& leg) const {
+    if (!request_.objective) {
+      return std::hypot(leg.air_length(), leg.to.z() - leg.from.z());
+    }
+    // Of a turn by few chords: those of its exact cost are thousands.
+    const int pieces = leg.turns() ? int(std::ceil(std::abs(leg.turn) / kChordTurn)) : 1;
+    double sum = 0;
+    for (int k = 0; k < pieces; ++k) {
+      sum += request_.objective->cost(
+          Leg::straight(leg.at(double(k) / pieces), leg.at((k + 1.0) / pieces)), 0, request_);
+    }
+    return sum;
+  }
+  double cost_to_goal(const Pose& pose) {
+    return request_.objective ? columns_(pose.position)
+                              : steering_.min_length_to_goal(pose, columns_(pose.position));
+  }
+
   void add(const Node& node) {
-    const double h = steering_.min_length_to_goal(node.pose, columns_(node.pose.position));
+    const double h = cost_to_goal(node.pose);
     if (!(node.g + h < best_)) {
       return;
     }
@@ -217,18 +238,23 @@ class Search {
     shots_.clear();
     for (std::size_t k = 0; k < goals_.size(); ++k) {
       const double length = steering_.length(node.pose, goals_[k]);
-      if (node.g + length < best_ * (1 - kTie)) {
+      const double at_least =
+          request_.objective
+              ? request_.objective->bound(node.pose.position, goals_[k].position, request_)
+              : length;
+      if (length < kInfinity && node.g + at_least < best_ * (1 - kTie)) {
         shots_.emplace_back(length, k);
       }
     }
     std::sort(shots_.begin(), shots_.end());
     for (const auto& [promised, k] : shots_) {
       const auto path = steering_.path(node.pose, goals_[k]);
-      if (path && is_free(at, path->legs)) {
-        best_ = node.g;
-        for (const Leg& leg : path->legs) {
-          best_ += std::hypot(leg.air_length(), leg.to.z() - leg.from.z());
-        }
+      double whole = node.g;
+      for (const Leg& leg : path ? path->legs : std::vector<Leg>()) {
+        whole += cost(leg);
+      }
+      if (path && (!request_.objective || whole < best_ * (1 - kTie)) && is_free(at, path->legs)) {
+        best_ = whole;
         request_.budget.show_best(best_);
         best_node_ = at;
         best_legs_ = path->legs;
