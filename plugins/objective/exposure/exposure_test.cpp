@@ -103,6 +103,8 @@ TEST(Exposure, NoRouteLeadsWhereTheFieldHasNoValue) {
     const PlanResult result =
         testing::make_planner(planner, "{cell_m: [10, 10, 10]}")->plan(request);
     EXPECT_EQ(result.status, PlanStatus::no_route) << planner << ": " << result.message;
+    const char* says = "legs without a cost by the objective left out, such as one to (";
+    EXPECT_NE(result.message.find(says), std::string::npos) << planner << ": " << result.message;
   }
 }
 
