@@ -443,6 +443,19 @@ class Returns(PlanCase):
         violation, = told["violations"]
         self.assertEqual((violation["rule"], violation["unit"], violation["limit"]), ("energy", "Wh", 8))
 
+    def test_the_battery_of_an_aeroplane_that_circles_at_home(self):
+        """What it takes counts until its circle there: how long it circles is the pilot's."""
+        way = [(16, 300, 600, 260), (16, -600, 600, 260), (16, -600, 0, 260), (20, 0, 0, 0)]
+        told = self.returns(PLANE, way, "--battery", "60", "--power", "100", parameters={"RTL_ALTITUDE": 260}, code=0)
+        self.assertIsNone(told["time_s"][1])
+        at_home = next(one["time_s"][1] for one in told["parts"] if one["what"] == "the way home")
+        self.assertAlmostEqual(told["energy"]["max_wh"], at_home * 100 / 3600, places=3)
+        self.assertTrue(told["energy"]["circles_at_home"])
+        self.returns(PLANE, way, "--battery", "6", "--power", "100", parameters={"RTL_ALTITUDE": 260}, code=1)
+        # A circle that nothing ends on the way there takes more than any battery holds.
+        told = self.returns(PLANE, way[:2] + [(17, -600, 300, 260)] + way[2:], "--battery", "60", "--power", "100", code=1)
+        self.assertIsNone(told["energy"]["max_wh"])
+
     def test_an_aeroplanes_take_off_is_not_judged(self):
         way = [(22, 0, 0, 60), (16, -600, 300, 60), (16, -600, -300, 60)]
         told = self.returns(PLANE, way, "--runway", "270", parameters={"RTL_ALTITUDE": 60}, code=1)

@@ -253,7 +253,8 @@ Json to_json(const PlanReport& report, const host::Mission& world) {
                       {"max_wh", std::isfinite(energy->max_wh) ? Json(energy->max_wh) : Json()},
                       {"usable_wh", energy->battery.usable_wh()},
                       {"reserve", energy->battery.reserve},
-                      {"farthest_m", energy->farthest_m}};
+                      {"farthest_m", energy->farthest_m},
+                      {"circles_at_home", energy->circles_at_home}};
   }
   if (report.returns) {
     json["returns"] = returns_json(report, world);

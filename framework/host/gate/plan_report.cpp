@@ -407,13 +407,27 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
   }
 }
 
+/// When the slowest flight ends, or has come to a circle at home that nothing ends: what follows is
+/// the pilot's.
+double flown_until_s(const PlanReport& report) {
+  double until_s = 0;
+  for (const ReportedPart& part : report.parts) {
+    const bool circles = part.what == "the circle at home" && !std::isfinite(part.time.max_s);
+    until_s = std::max(until_s, circles ? 0 : part.time.max_s);
+  }
+  const bool is_known = report.autopilots.size() == 1 && !report.parts.empty();
+  return is_known ? std::min(until_s, report.time.max_s) : report.time.max_s;
+}
+
 void add_energy(PlanReport& report, const formats::MissionFile& plan, const World& world,
                 const Battery& battery) {
   constexpr double kSecondsPerHour = 3600;
   EnergyUse use;
   use.battery = battery;
   use.min_wh = report.time.min_s * battery.least_w / kSecondsPerHour;
-  use.max_wh = report.time.max_s * battery.power_w / kSecondsPerHour;
+  const double until_s = flown_until_s(report);
+  use.max_wh = until_s * battery.power_w / kSecondsPerHour;
+  use.circles_at_home = until_s < report.time.max_s;
   Vec3 home = report.line.empty() ? Vec3::Zero() : report.line.front();
   if (plan.home && world.frame().has_position()) {
     const auto [x, y] = world.frame().to_local(plan.home->lon, plan.home->lat);

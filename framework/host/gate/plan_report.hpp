@@ -112,7 +112,8 @@ struct EnergyUse {
   double min_wh = 0;
   double max_wh = 0;
   Battery battery;
-  double farthest_m = 0;  ///< from home, or from where it begins
+  double farthest_m = 0;         ///< from home, or from where it begins
+  bool circles_at_home = false;  ///< as its end, which is not counted
 
   /// "31.0 to 44.2 Wh of 72.0 Wh that may be used (battery 90.0 Wh, reserve 20 %), up to 3.912 km
   /// from home"

@@ -63,7 +63,8 @@ std::string EnergyUse::in_words() const {
                               : "more than any battery holds, for nothing ends it, of ";
   return use + one(battery.usable_wh()) + " Wh that may be used (battery " +
          one(battery.capacity_wh) + " Wh, reserve " + with_decimals(100 * battery.reserve, 0) +
-         " %), up to " + with_decimals(farthest_m / 1000, 3) + " km from home";
+         " %), up to " + with_decimals(farthest_m / 1000, 3) + " km from home" +
+         (circles_at_home ? ", to its circle at home" : "");
 }
 
 std::string items_in_words(const std::vector<std::string>& names, const std::vector<int>& numbers) {
