@@ -207,7 +207,7 @@ class Returns(PlanCase):
         self.returns(COPTER, self.beyond(), code=1)
         out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", code=1)
         self.assertRegex(out, r"returns fail: 1 part of the flight without a way home\n"
-                              r"  from \d+ min \d+ s \(item 4 \(waypoint\)\) to .*: a return's the way home: flies into "
+                              r"  from \d+ min \d+ s \(item 4 \(waypoint\)\) to .*: a return's way home: flies into "
                               r"the ground, up to 1\d\d\.\d m below its surface")
         for file, option in (("c.html", "--certificate"), ("j.xml", "--junit")):
             self.call("mission.plan", "--terrain", "ridge.asc", "--returns", option, file, code=1)
@@ -435,6 +435,36 @@ class Returns(PlanCase):
         certificate = (self.folder / "c.html").read_text()
         self.assertIn("of 720.0 Wh that may be used", certificate)
         self.assertIn("point of no return", certificate)
+
+    def test_a_page_with_the_reach_of_home(self):
+        """Of a mission: ways home on the scenario's battery, its point of no return, and what `check` says."""
+        way = [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 100, 50)]
+        self.returns(COPTER, way, code=0)
+        scenario = self.scenario("{energy: {capacity_wh: 30, power_w: 360}}")
+        told = json.loads(self.call("mission.plan", "--scenario", scenario, "--returns", "--json", code=1)[0])
+
+        def view(*options):
+            return subprocess.run([sys.argv[1], "view", "mission.plan", "-o", "page.html", *options], cwd=self.folder,
+                                  capture_output=True, text=True, timeout=600)
+
+        run = view("--scenario", scenario, "--reach")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        page = (self.folder / "page.html").read_text()
+        scene = json.loads(page[page.index('{"altiplan_scene"'):].split("</script>")[0])
+        self.assertIn("a line every 5 Wh, to 24 Wh", scene["basemap"]["name"])
+        last = next(one["at"] for one in scene["numbered"] if one["number"] == "point of no return")
+        share = (told["returns"]["point_of_no_return_s"] - sum(told["parts"][0]["time_s"]) / 2) / (
+            sum(told["parts"][1]["time_s"]) / 2 - sum(told["parts"][0]["time_s"]) / 2)
+        home = next(one["at"] for one in scene["numbered"] if one["number"] == 1)
+        self.assertAlmostEqual(last[1] - home[1], 900 * share, delta=20)
+        notes = " ".join(scene["notes"])
+        for words in ("energy: ", "returns fail: ", "point of no return: ", "of 24.0 Wh that may be used"):
+            self.assertIn(words, notes)
+        for options, code, words in ((("--terrain", "ridge.asc", "--reach"), 2, "needs --scenario"),
+                                     (("--scenario", self.scenario("{}"), "--reach"), 3, "battery is not known")):
+            run = view(*options)
+            self.assertEqual(run.returncode, code, run.stderr)
+            self.assertIn(words, run.stderr)
 
     def test_a_mission_that_takes_more_than_the_battery(self):
         told = self.returns(COPTER, [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 100, 50)], "--battery", "10", "--power",

@@ -89,6 +89,20 @@ void print_glide(const host::GlideReport& glide, const PlanReport& report,
   }
 }
 
+/// The verdict, and for each stretch that is refused a line.
+std::vector<std::string> lines_of_returns(const PlanReport& report) {
+  const host::ReturnsReport& returns = *report.returns;
+  std::vector<std::string> lines{std::string("returns ") + word_of(returns.verdict) + ": " +
+                                 returns.in_words()};
+  if (returns.point_of_no_return_s) {
+    lines.push_back("point of no return: " + returns.no_return_in_words());
+  }
+  for (const host::RefusedReturn& refused : returns.refused) {
+    lines.push_back(in_words(refused, report));
+  }
+  return lines;
+}
+
 void print(const PlanReport& report, const host::Mission& world) {
   std::printf("%s: %s\n", colored(report.verdict()).c_str(), figures_of(report).c_str());
   if (report.energy) {
@@ -107,8 +121,7 @@ void print(const PlanReport& report, const host::Mission& world) {
     std::printf("returns %s: %s\n", colored(report.returns->verdict).c_str(),
                 host::printable(report.returns->in_words()).c_str());
     if (report.returns->point_of_no_return_s) {
-      std::printf("  point of no return: %s s after take-off\n",
-                  fixed(*report.returns->point_of_no_return_s, 0).c_str());
+      std::printf("  point of no return: %s\n", report.returns->no_return_in_words().c_str());
     }
     for (const host::RefusedReturn& refused : report.returns->refused) {
       std::printf("  %s\n", host::printable(in_words(refused, report)).c_str());
@@ -721,7 +734,14 @@ host::JudgedLine JudgedPlan::line(const Frame& page) const {
     shown.line = Route(std::move(moved));
   }
   shown.measures = report.measures;
-  shown.notes = report.notes;
+  if (report.energy) {
+    shown.notes.push_back("energy: " + report.energy->in_words());
+  }
+  if (report.returns) {
+    const std::vector<std::string> lines = lines_of_returns(report);
+    shown.notes.insert(shown.notes.end(), lines.begin(), lines.end());
+  }
+  shown.notes.insert(shown.notes.end(), report.notes.begin(), report.notes.end());
   const std::vector<std::string> sentences = findings();
   for (std::size_t n = 0; n < sentences.size(); ++n) {
     Violation violation = report.findings[n].violation;
@@ -744,7 +764,11 @@ JudgedPlan judged_plan(const PlanCheck& given, const host::Overrides& overrides,
                        const std::optional<std::string>& text) {
   expect_files(given);
   PlanCheck plan = prepared(given);
-  return judge(plan, text ? *text : formats::read_file(plan.plan), std::nullopt, overrides);
+  std::optional<host::Config> scenario;
+  if (plan.scenario) {
+    scenario = host::load_scenario(*plan.scenario, overrides);
+  }
+  return judge(plan, text ? *text : formats::read_file(plan.plan), scenario, overrides);
 }
 
 int check_plan(const PlanCheck& given, const host::Overrides& overrides) {

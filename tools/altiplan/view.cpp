@@ -9,6 +9,7 @@
 #include "host/view/chromium.hpp"
 #include "host/view/film.hpp"
 #include "host/view/picture_svg.hpp"
+#include "host/view/reach.hpp"
 #include "host/view/scene.hpp"
 #include "host/view/viewer_page.hpp"
 #include "mission_options.hpp"
@@ -152,6 +153,20 @@ host::Json numbered(const JudgedPlan& judged) {
   return items;
 }
 
+/// From where the mission's home can be reached, and its point of no return.
+void add_reach_of_mission(host::Json& scene, const JudgedPlan& judged) {
+  if (!judged.mission.home) {
+    throw Error("--reach: where home is, the mission does not say");
+  }
+  const formats::MissionPoint& home = *judged.mission.home;
+  const std::array<double, 2> at = judged.world.truth.frame().to_local(home.lon, home.lat);
+  busy("searching ways home", [&] {
+    host::add_reach(scene, judged.world, {at[0], at[1], home.altitude_m},
+                    judged.report.returns->point_of_no_return);
+    return 0;
+  });
+}
+
 /// A mission's line as it is flown, with the verdict of `check`.
 host::Scene scene_of_mission(const ViewArguments& arguments) {
   const std::string& file = arguments.results.front();
@@ -161,6 +176,9 @@ host::Scene scene_of_mission(const ViewArguments& arguments) {
   const JudgedPlan judged = judged_plan(arguments.mission.plan, arguments.overrides);
   host::Scene scene = host::line_scene(judged.line(judged.world.truth.frame()), judged.world);
   scene.json["numbered"] = numbered(judged);
+  if (arguments.reach) {
+    add_reach_of_mission(scene.json, judged);
+  }
   return scene;
 }
 
@@ -222,16 +240,17 @@ void add_view(App& app, Action& action) {
     }
     const std::vector<std::string>& files = arguments.results;
     for (const std::string& file : files) {
-      if (!is_mission(arguments.mission, file)) {
+      if (!arguments.mission.plan.scenario && !is_mission(arguments.mission, file)) {
         continue;
       }
-      if (arguments.reach) {
-        throw UsageError{"--reach is shown of results: a mission's battery is not known"};
+      if (arguments.reach && !arguments.mission.plan.scenario) {
+        throw UsageError{"--reach of a mission needs --scenario, whose vehicle has a battery"};
       }
       if (files.size() > 1 || arguments.mp4) {
         throw UsageError{"a mission is shown alone, and not as a film"};
       }
       arguments.mission.plan = checked_plan(arguments.mission, file);
+      arguments.mission.plan.returns = arguments.reach;
     }
   };
   auto [command, arguments] = add_command<ViewArguments>(
@@ -268,7 +287,9 @@ void add_view(App& app, Action& action) {
           "show from where home can be reached on the scenario's battery: lines of the energy "
           "of the best way home, and the point of no return")
       ->excludes(basemap);
-  add_mission_options(command, arguments.mission);
+  auto* scenario = command.add_option("--scenario FILE", arguments.mission.plan.scenario,
+                                      "scenario file in which to judge a mission (YAML)");
+  add_mission_options(command, arguments.mission)->excludes(scenario);
   add_plugin_path(command, arguments.overrides);
   set_example(command, "altiplan view result.json -o page.html");
 }

@@ -199,8 +199,7 @@ std::string certificate(const PlanReport& report, const Mission& world, const Ba
     html += row({"energy", xml_text(report.energy->in_words())});
   }
   if (report.returns && report.returns->point_of_no_return_s) {
-    html += row({"point of no return",
-                 with_decimals(*report.returns->point_of_no_return_s, 0) + " s after take-off"});
+    html += row({"point of no return", report.returns->no_return_in_words()});
   }
   html += "</table>\n" + violations(report, request) + returns(report);
   html += "<h2>Map</h2>\n" + map_svg(report.imported.route, labels_of(report), world);

@@ -88,6 +88,9 @@ struct ReturnsReport {
   /// The last second from which, on the slowest flight, the battery lasts for the way home, its
   /// reserve apart; none: no battery is known.
   std::optional<double> point_of_no_return_s{};
+  std::optional<Vec3> point_of_no_return{};  ///< none: the end of the flight
+  /// "62 s after take-off"; "" where no battery is known.
+  std::string no_return_in_words() const;
   /// Of the returns and the glides.
   Verdict overall() const;
   /// The worst of the refused; none: nothing is refused.

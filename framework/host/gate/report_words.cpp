@@ -183,9 +183,17 @@ std::string ReturnsReport::in_words() const {
                                   : problems_in_words(*this, "without a way home");
 }
 
+std::string ReturnsReport::no_return_in_words() const {
+  return !point_of_no_return_s ? ""
+         : point_of_no_return  ? with_decimals(*point_of_no_return_s, 0) + " s after take-off"
+                               : "none, the battery lasts for the way home from every second";
+}
+
 std::string in_words(const RefusedReturn& refused, const PlanReport& report) {
+  const std::string& what = refused.finding.violation.message;
+  const bool is_part = what.starts_with("the ");  // "the way home: …"
   return stretch_in_words(refused, report) + ", worst at " + time_of_flight(refused.worst_s) +
-         ": a return's " + refused.finding.violation.message;
+         ": a return" + (is_part ? "'s " + what.substr(4) : " " + what);
 }
 
 Verdict ReturnsReport::overall() const {

@@ -67,13 +67,18 @@ class ReturnJudge {
     report_.parameters.insert(report_.parameters.end(), parameters_.begin(), parameters_.end());
     add_stretches();
     if (battery_) {
+      std::optional<Vec3> last;
       for (const Refused& refused : refused_) {
-        if (is_too_much(refused.needed_wh)) {
-          last_s = std::min(last_s, refused.from_s);
+        if (is_too_much(refused.needed_wh) && refused.from_s < last_s) {
+          last_s = refused.from_s;
+          const Whereabouts& place = refused.place;
+          last = Vec3(place.at.x(), place.at.y(), place.high_m);
         }
       }
-      report_.point_of_no_return_s =
-          std::min(report_.point_of_no_return_s.value_or(last_s), last_s);
+      if (last_s <= report_.point_of_no_return_s.value_or(last_s)) {
+        report_.point_of_no_return_s = last_s;
+        report_.point_of_no_return = last;
+      }
     }
   }
 

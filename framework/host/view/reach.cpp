@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "altiplan/check.hpp"
 #include "altiplan/energy.hpp"
 #include "altiplan/error.hpp"
 #include "altiplan/kit/lattice/home_field.hpp"
@@ -116,17 +117,13 @@ std::string image_of(const Plan& plan, double available_wh, double step_wh) {
   }
   return png(width, height, rgba);
 }
-}  // namespace
-
-void add_reach(Json& scene, const Mission& mission, const Route& route) {
-  const Request& request = mission.request;
+/// The field of ways home, whose picture is added.
+HomeField add_field(Json& scene, const Request& request, const Vec3& home) {
   const Energy* energy = request.vehicle.energy.get();
   if (energy == nullptr || !std::isfinite(energy->capacity_wh)) {
     throw Error("--reach: the battery is not known: expected vehicle.energy with capacity_wh");
   }
-  const Vec3 home = route.empty() ? request.start.position : route.front();
-  const HomeField field(request, {home}, cell_of(request),
-                        HomeField::energy(request, energy->power));
+  HomeField field(request, {home}, cell_of(request), HomeField::energy(request, energy->power));
   const double available = energy->available_wh();
   const double step = round_step(available / kLines);
   const Plan plan(field);
@@ -138,13 +135,37 @@ void add_reach(Json& scene, const Mission& mission, const Route& route) {
       {"name", name},
       {"box", {{box.min.x(), box.min.y()}, {box.max.x(), box.max.y()}}},
       {"image", "data:image/png;base64," + base64(std::as_bytes(std::span(image)))}};
+  return field;
+}
+
+void add_sign(Json& scene, const Vec3& at) {
+  scene["numbered"].push_back({{"number", "point of no return"}, {"at", {at.x(), at.y(), at.z()}}});
+}
+}  // namespace
+
+void add_reach(Json& scene, const Mission& mission, const Route& route) {
+  const Request& request = mission.request;
+  const Vec3 home = route.empty() ? request.start.position : route.front();
+  const HomeField field = add_field(scene, request, home);
   if (!route.empty()) {
     const auto last =
         point_of_no_return(route, request, [&](const Vec3& p) { return field.from(p); });
     if (last) {
-      scene["numbered"].push_back({{"number", "point of no return"},
-                                   {"at", {last->place.x(), last->place.y(), last->place.z()}}});
+      add_sign(scene, last->place);
     }
+  }
+}
+
+void add_reach(Json& scene, const Mission& mission, Vec3 home,
+               const std::optional<Vec3>& point_of_no_return) {
+  constexpr double kStep = 2;  // metres
+  while (home.z() < mission.request.volume.max.z() &&
+         !leg_ok(std::nullopt, home, home, mission.request)) {
+    home.z() += kStep;
+  }
+  add_field(scene, mission.request, home);
+  if (point_of_no_return) {
+    add_sign(scene, *point_of_no_return);
   }
 }
 }  // namespace altiplan::host

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
 
@@ -11,4 +13,8 @@ namespace altiplan::host {
 /// from the best height above each place, and `numbered` gets the point of no return. Home is the
 /// mission's start where the route is empty. Throws Error where no battery is known.
 void add_reach(Json& scene, const Mission& mission, const Route& route);
+/// The same of another home, or of the lowest place above it where the vehicle may be; with the
+/// point of no return where it is known.
+void add_reach(Json& scene, const Mission& mission, Vec3 home,
+               const std::optional<Vec3>& point_of_no_return);
 }  // namespace altiplan::host
