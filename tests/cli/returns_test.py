@@ -178,6 +178,32 @@ class Returns(PlanCase):
                            "cure.param", "--fix-returns", "other.param", code=1)
         self.assertIn("other.param: not written", err)
 
+    def test_a_return_path_that_cures(self):
+        """Of the mission's own items, where failsafes fly along it: the first below passes with one marker, an aeroplane's
+        with two."""
+        plane = [(16, 300, 0, 260), (16, 1400, 0, 260), (16, 2000, 0, 260), (16, 2300, 300, 160), (16, 2300, -400, 150),
+                 (21, 2300, -1400, 0)]
+        copter = self.beyond() + [(16, 1900, 200, 260), (16, 1900, 300, 60), (21, 1900, 400, 0)]
+        for vehicle, way, parameters, markers, limits in (
+                (COPTER, copter, {"FS_THR_ENABLE": 6}, [188], ()),
+                (PLANE, plane, {"RTL_AUTOLAND": 4}, [188, 189], ()), (PLANE, plane, {"RTL_AUTOLAND": 2}, [189], ())):
+            with self.subTest(parameters=parameters):
+                told = self.returns(vehicle, way, *limits, "--fix-returns", "cured.plan", parameters=parameters, code=1)
+                self.assertNotEqual(told["returns"]["verdict"], "pass")
+                cured = json.loads((self.folder / "cured.plan").read_text())
+                items = cured["mission"]["items"]
+                self.assertEqual([one["command"] for one in items if one["command"] in (188, 189)], markers)
+                self.assertEqual([one["doJumpId"] for one in items], list(range(1, len(items) + 1)))
+                out, _ = self.call("cured.plan", "--terrain", "ridge.asc", "--params", "p.param", *limits, "--returns",
+                                   "--json", code=0)
+                self.assertEqual(json.loads(out)["returns"]["verdict"], "pass")
+                # All else is as it was.
+                before = json.loads((self.folder / "mission.plan").read_text())
+                cured["mission"]["items"] = [one for one in items if one["command"] not in (188, 189)]
+                for number, one in enumerate(cured["mission"]["items"], 1):
+                    one["doJumpId"] = number
+                self.assertEqual(cured, before)
+
     def test_no_rally_points_for_what_is_not_judged(self):
         """Of a VTOL no return is judged: that is said, and nothing written."""
         self.returns((12, 22), self.beyond(), code=1)

@@ -48,11 +48,16 @@ def joined(items, place, start):
                 at += 1
             found.append((math.dist((0, 0, 0), apart((*items[at][1:3], height_of(items[at])), place)), begin))
             continue
-        before = None
+        before = first = None
         for at in range(begin, len(items)):
             if any(items[at][1:4]):
                 here = (*items[at][1:3], height_of(items[at]))
-                found.append((distance(before or here, here, place), at))
+                # Where the first leg is nearest at its start, its item has been found, and is no farther.
+                is_behind = before is not None and before == first and sum(
+                    x * y for x, y in zip(apart(before, here), apart(before, place))) <= 0
+                if not is_behind:
+                    found.append((distance(before or here, here, place), at))
+                first = first if before else here
                 before = here
             if items[at][0] in (21, 85, 208, 189):
                 break

@@ -413,8 +413,8 @@ void fix(const PlanCheck& plan, const PlanReport& report, const std::string& tex
   }
 }
 
-/// Writes what cures the returns, rally points in a copy of the mission or a parameter, or says why
-/// not.
+/// Writes what cures the returns, markers or rally points in a copy of the mission or a parameter,
+/// or says why not.
 void fix_returns(const PlanCheck& plan, const PlanReport& report, const std::string& text,
                  const formats::MissionFile& mission, const host::Mission& world) {
   const std::string& file = *plan.fixed_returns;
@@ -425,7 +425,15 @@ void fix_returns(const PlanCheck& plan, const PlanReport& report, const std::str
   const bool by_rally = std::filesystem::path(file).extension() == ".plan";
   std::string words;
   busy("curing the returns", [&] {
-    if (by_rally) {
+    if (const auto markers = by_rally
+                                 ? host::markers_that_cure(plan.plan, mission, world, plan.gate)
+                                 : std::nullopt) {
+      host::write_file(file, host::with_added_markers(text, *markers));
+      for (const host::AddedMarker& marker : *markers) {
+        words = (marker.command == 188 ? "a return path (188)" : "a landing start (189)") +
+                std::string(" before ") + marker.before + (words.empty() ? "" : ", " + words);
+      }
+    } else if (by_rally) {
       if (const auto cured = host::with_rally_cure(plan.plan, mission, world, plan.gate)) {
         host::write_file(file, host::with_rally_points(text, cured->rally));
         const std::size_t added = cured->rally.size() - mission.rally.size();

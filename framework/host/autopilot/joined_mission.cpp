@@ -21,6 +21,7 @@ constexpr int kParachute = 208;
 constexpr std::size_t kLooksAt = 1000;  // commands, of all return paths
 constexpr double kDoubt = 2;            // metres that it may think that it is elsewhere
 constexpr double kOnGround = 1;         // metres above it
+constexpr double kLayer = 10;           // metres of height that are told apart
 constexpr double kTakesOff = 3;         // metres that it has risen when a failsafe counts
 constexpr double kHeightsAlike = 5;     // metres: aeroplanes' heights at an item are told apart by
 
@@ -139,27 +140,24 @@ std::vector<Walker::Entry> Walker::entries(Failsafe kind) const {
   return all;
 }
 
-std::vector<std::size_t> Walker::joins(std::size_t n, Failsafe kind, const Whereabouts& place) {
-  const std::vector<Entry> all = entries(kind);
-  std::vector<std::size_t> possible;
-  const auto [lon, lat] = world_.frame().to_lonlat(place.at.x(), place.at.y());
-  const Vec3 here(lon, lat, (place.low_m + place.high_m) / 2);
-  // A landing without a place of its own has that of the item behind it.
-  const auto place_of = [&](std::size_t command) -> std::optional<Vec3> {
-    std::size_t at = command;
-    if (commands_[at].number == kLandingStart && !commands_[at].has_position() &&
-        commands_[at].altitude_m == 0) {
-      while (++at < commands_.size() && commands_[at].number > kLastOfItems &&
-             !commands_.is_jump(at)) {
-      }
+// A landing without a place of its own has that of the item behind it.
+std::optional<Vec3> Walker::place_of_entry(std::size_t command) const {
+  const auto& own = commands_[command];
+  std::size_t at = command;
+  if (own.number == kLandingStart && !own.has_position() && own.altitude_m == 0) {
+    while (++at < commands_.size() && commands_[at].number > kLastOfItems &&
+           !commands_.is_jump(at)) {
     }
-    if (at == commands_.size() || !has_place(commands_[at].number) ||
-        !commands_[at].has_position() || formats::is_above_ground(commands_[at].frame)) {
-      return std::nullopt;
-    }
-    const double base = formats::is_of_home(commands_[at].frame) ? home_z_ : 0;
-    return Vec3(commands_[at].lon, commands_[at].lat, base + commands_[at].altitude_m);
-  };
+  }
+  if (at == commands_.size() || !has_place(commands_[at].number) || !commands_[at].has_position() ||
+      formats::is_above_ground(commands_[at].frame)) {
+    return std::nullopt;
+  }
+  const double base = formats::is_of_home(commands_[at].frame) ? home_z_ : 0;
+  return Vec3(commands_[at].lon, commands_[at].lat, base + commands_[at].altitude_m);
+}
+
+std::vector<Walker::Joined> Walker::joins(std::size_t n, Failsafe kind, const Whereabouts& place) {
   std::size_t looked_at = 0;
   for (std::size_t start = 0; start < commands_.size(); ++start) {
     looked_at += commands_[start].number == kReturnPathStart ? end_of_path(start) - start : 0;
@@ -168,33 +166,48 @@ std::vector<std::size_t> Walker::joins(std::size_t n, Failsafe kind, const Where
     give_up(n, "return paths (188) of 1000 commands and more are not judged");
     return {};
   }
+  const std::vector<Entry> all = entries(kind);
   if (all.size() == 1 && !commands_.is_jump(all.front().command)) {
-    return {all.front().command};
+    return {{all.front().command, place}};
   }
-  std::vector<double> distances;
+  std::vector<std::pair<Vec3, Vec3>> legs;
   for (const Entry& entry : all) {
-    const auto to = place_of(entry.command);
-    const auto from = entry.before ? place_of(*entry.before) : to;
+    const auto to = place_of_entry(entry.command);
+    const auto from = entry.before ? place_of_entry(*entry.before) : to;
     if (!to || !from) {
       give_up(n, "whether it joins the mission at " + name_of_command(commands_[entry.command]) +
                      ", which jumps, has no position or is above the ground, is not judged");
       return {};
     }
-    distances.push_back(distance_to(*from, *to, here));
+    legs.emplace_back(*from, *to);
   }
-  if (all.empty()) {
-    return {};
-  }
-  const double nearest = *std::min_element(distances.begin(), distances.end());
-  const double doubt = 2 * std::hypot(place.radius_m, (place.high_m - place.low_m) / 2) + kDoubt;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const bool is_new =
-        std::find(possible.begin(), possible.end(), all[k].command) == possible.end();
-    if (distances[k] <= nearest + doubt && is_new) {
-      possible.push_back(all[k].command);
+  const auto [lon, lat] = world_.frame().to_lonlat(place.at.x(), place.at.y());
+  const int layers = std::max(1, int(std::ceil((place.high_m - place.low_m) / kLayer)));
+  const double half = (place.high_m - place.low_m) / layers / 2;
+  const double doubt = std::hypot(place.radius_m, half) + kDoubt / 2;
+  std::map<std::size_t, Whereabouts> possible;
+  for (int layer = 0; layer < layers; ++layer) {
+    const Vec3 here(lon, lat, place.low_m + half * (2 * layer + 1));
+    std::vector<double> distances;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto& [from, to] = legs[k];
+      // Of the first item and a leg that is nearest there, the item is certainly taken.
+      const bool is_first_leg = k > 0 && all[k].before == all[k - 1].command && !all[k - 1].before;
+      const Vec3 leg = between(from, to);
+      const bool is_before = between(from, here).dot(leg) < -doubt * leg.norm();
+      distances.push_back(is_first_leg && is_before ? kInfinity : distance_to(from, to, here));
+    }
+    const double nearest = *std::min_element(distances.begin(), distances.end());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (distances[k] <= nearest + 2 * doubt) {
+        const Whereabouts none{place.at, place.radius_m, kInfinity, -kInfinity};
+        Whereabouts& from = possible.try_emplace(all[k].command, none).first->second;
+        from.low_m = std::min(from.low_m, here.z() - half);
+        from.high_m = std::max(from.high_m, here.z() + half);
+      }
     }
   }
-  return possible;
+  return {possible.begin(), possible.end()};
 }
 
 // ArduPilot starts the first of the orders before an item when it starts the item, others later.
@@ -259,13 +272,13 @@ bool Walker::join_mission(std::size_t n, Failsafe kind, const Whereabouts& place
   const TimeSpan begin = mission_.time;
   TimeSpan end{kInfinity, 0};
   const std::size_t remarked = mission_.remarks.size();
-  for (const std::size_t command : joins(n, kind, from)) {
+  for (const auto& [command, there] : joins(n, kind, from)) {
     mission_.time = begin;
     if (!is_copter) {
-      be_anywhere(from);
+      be_anywhere(there);
       forget_speeds();
     }
-    join_at(n, command, from);
+    join_at(n, command, there);
     end = {std::min(end.min_s, mission_.time.min_s), std::max(end.max_s, mission_.time.max_s)};
   }
   mission_.time = end.max_s > 0 ? end : begin;

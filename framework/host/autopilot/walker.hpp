@@ -185,9 +185,12 @@ class Walker {
   std::size_t end_of_path(std::size_t start) const;
   /// Those of return paths (188), or of landing sequences (189).
   std::vector<Entry> entries(Failsafe kind) const;
-  /// The commands from which on a return may fly the mission from anywhere in a place; none if it
-  /// does not join it. What cannot be told of them is remarked.
-  std::vector<std::size_t> joins(std::size_t n, Failsafe kind, const Whereabouts& place);
+  /// Where it is as ArduPilot takes it: degrees and metres above sea level; none if not known here.
+  std::optional<Vec3> place_of_entry(std::size_t command) const;
+  using Joined = std::pair<std::size_t, Whereabouts>;
+  /// The commands from which on a return may fly the mission, each from which heights of a place;
+  /// none if it does not join it. What cannot be told of them is remarked.
+  std::vector<Joined> joins(std::size_t n, Failsafe kind, const Whereabouts& place);
   /// True if a failsafe's return goes on with the mission, for that is on its way home there.
   bool is_on_way_home(std::size_t n) const;
   /// Flies so; false if there is nothing to join.

@@ -198,6 +198,30 @@ std::string changed_plan(const std::string& text, formats::MissionFile::Format f
   }
 }
 
+std::string with_added_markers(std::string text, const std::vector<AddedMarker>& markers) {
+  constexpr std::string_view kNumber = "\"doJumpId\"";
+  for (const AddedMarker& marker : markers) {
+    std::size_t begin = JsonText(text).at(marker.before).begin;
+    const std::size_t line = text.rfind('\n', begin) + 1;
+    const std::string indent =
+        line > 0 ? text.substr(line - 1, text.find_first_not_of(" \t", line) - line + 1) : "";
+    int number = 0;
+    for (std::size_t at = text.find(kNumber, begin); at != text.npos;
+         at = text.find(kNumber, at + 1)) {
+      const std::size_t digits = text.find_first_of("0123456789", at);
+      const std::size_t end = text.find_first_not_of("0123456789", digits);
+      const int old = std::stoi(text.substr(digits, end - digits));
+      number = number == 0 ? old : number;
+      text.replace(digits, end - digits, std::to_string(old + 1));
+    }
+    text.insert(begin, R"({"type": "SimpleItem", "autoContinue": true, "command": )" +
+                           std::to_string(marker.command) + R"(, "doJumpId": )" +
+                           std::to_string(number) +
+                           R"(, "frame": 2, "params": [0, 0, 0, 0, 0, 0, 0]},)" + indent);
+  }
+  return text;
+}
+
 std::string with_rally_points(const std::string& text,
                               const std::vector<formats::MissionPoint>& points) {
   const JsonText json(text);

@@ -30,6 +30,15 @@ struct PlanChanges {
 std::string changed_plan(const std::string& text, formats::MissionFile::Format format,
                          const PlanChanges& changes);
 
+/// A command without a place or parameters.
+struct AddedMarker {
+  std::string before;  ///< place of an item: "mission.items.3"
+  int command = 0;     ///< MAV_CMD
+};
+/// The text of a `.plan` file with these, from the last to the first, and the items behind them
+/// numbered anew. No item may jump.
+std::string with_added_markers(std::string text, const std::vector<AddedMarker>& markers);
+
 /// The text of a `.plan` file with these rally points, above home, in place of its own and all else
 /// as it is.
 std::string with_rally_points(const std::string& text,

@@ -203,6 +203,112 @@ class RallyCure {
 };
 }  // namespace
 
+namespace {
+
+constexpr int kReturnPathStart = 188;
+constexpr int kLandingStart = 189;
+
+/// The markers that ArduPilot looks for when a failsafe has it return; none without such a
+/// failsafe.
+std::vector<int> markers_of_returns(formats::Autopilot autopilot, const ParameterFile& given) {
+  constexpr double kAlongMission = 6;  // of a failsafe's actions
+  if (autopilot.is_px4() || autopilot.airframe == formats::Airframe::vtol) {
+    return {};
+  }
+  const Parameters value(autopilot, given);
+  if (!autopilot.is_copter()) {
+    const double autoland = value("RTL_AUTOLAND");
+    return autoland == 4                    ? std::vector{kReturnPathStart}
+           : autoland == 1 || autoland == 2 ? std::vector{kLandingStart}
+                                            : std::vector<int>{};
+  }
+  const bool joins = std::any_of(given.begin(), given.end(), [&](const auto& parameter) {
+    const std::string& name = parameter.first;
+    return parameter.second.value == kAlongMission &&
+           (name == "FS_THR_ENABLE" || name == "FS_GCS_ENABLE" || name.ends_with("_FS_LOW_ACT") ||
+            name.ends_with("_FS_CRT_ACT"));
+  });
+  return joins ? std::vector{kReturnPathStart, kLandingStart} : std::vector<int>{};
+}
+
+MissionFile with_markers(MissionFile plan, const std::vector<AddedMarker>& markers) {
+  for (const AddedMarker& marker : markers) {  // from the last
+    const auto before = std::find_if(plan.commands.begin(), plan.commands.end(),
+                                     [&](const auto& one) { return one.place == marker.before; });
+    formats::MissionCommand added;
+    added.number = marker.command;
+    added.frame = 2;
+    added.item = before->item;
+    std::for_each(before, plan.commands.end(), [](auto& one) { one.item += 1; });
+    plan.commands.insert(before, added);
+  }
+  return plan;
+}
+}  // namespace
+
+std::optional<std::vector<AddedMarker>> markers_that_cure(const std::string& file,
+                                                          const MissionFile& plan,
+                                                          const Mission& world,
+                                                          const GateOptions& options) {
+  using formats::Task;
+  const auto autopilots =
+      possible_autopilots(plan, options.firmware, options.airframe, options.flight.parameters);
+  const auto task_of = [](const auto& one) { return formats::command_task(one.number).task; };
+  const auto is = [&](Task task) {
+    return [&, task](const auto& one) { return task_of(one) == task; };
+  };
+  const auto& commands = plan.commands;
+  if (autopilots.size() != 1 || std::any_of(commands.begin(), commands.end(), is(Task::jump)) ||
+      std::any_of(commands.begin(), commands.end(), is(Task::jump_to_tag))) {
+    return std::nullopt;
+  }
+  std::vector<std::size_t> items;  // with places of their own, and in the file
+  for (std::size_t n = 1; n < commands.size(); ++n) {
+    const bool is_alone = std::count_if(commands.begin(), commands.end(), [&](const auto& one) {
+                            return one.place == commands[n].place;
+                          }) == 1;
+    const bool is_simple =
+        commands[n].place.starts_with("mission.items.") &&
+        commands[n].place.find_first_not_of("0123456789", 14) == std::string::npos;
+    if (is_alone && is_simple && commands[n].has_position() && task_of(commands[n]) != Task::land &&
+        formats::flies_to_position(task_of(commands[n]))) {
+      items.push_back(n);
+    }
+  }
+  const ReturnsReport before = judge_returns(plan, world, options);
+  const auto cure = [&](const std::vector<AddedMarker>& markers) {
+    const MissionFile with = with_markers(plan, markers);
+    return is_cured(judge_returns(with, world, options), before) &&
+           judge_plan(file, with, world, options).passed();
+  };
+  // An aeroplane does not land from wherever it is: its path ends where the last approach begins.
+  const auto land = std::find_if(commands.begin(), commands.end(), is(Task::land));
+  const auto approach = std::find_if(items.rbegin(), items.rend(), [&](std::size_t n) {
+    return n < std::size_t(land - commands.begin());
+  });
+  const bool has_start = std::any_of(commands.begin(), commands.end(), is(Task::landing_start));
+  for (const int command : markers_of_returns(autopilots.front(), options.flight.parameters)) {
+    const bool needs_start =
+        command == kReturnPathStart && !autopilots.front().is_copter() && !has_start;
+    if (needs_start && approach == items.rend()) {
+      return std::nullopt;
+    }
+    for (std::size_t k = items.size(); k-- > 0;) {
+      std::vector<AddedMarker> markers{{commands[items[k]].place, command}};
+      if (needs_start && items[k] >= *approach) {
+        continue;
+      }
+      if (needs_start) {
+        markers.insert(markers.begin(), {commands[*approach].place, kLandingStart});
+      }
+      if (cure(markers)) {
+        return markers;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 std::optional<MissionFile> with_rally_cure(const std::string& file, const MissionFile& plan,
                                            const Mission& world, const GateOptions& options) {
   const auto autopilots =
