@@ -299,10 +299,13 @@ void Walker::join_at(std::size_t n, std::size_t command, const Whereabouts& plac
   const bool is_copter = autopilot_.is_copter();
   const Task task = item < commands_.size() ? task_of(item) : Task::other;
   const bool lands = is_copter && (task == Task::land || task == Task::vtol_land);
-  const bool is_flown_to =
-      task == Task::waypoint || task == Task::loiter_forever || task == Task::loiter_time ||
+  const bool is_circle =
+      task == Task::loiter_forever || task == Task::loiter_time ||
       task == Task::loiter_to_altitude ||
       (task == Task::loiter_turns && !(is_copter && commands_[item].params[2] == 0));
+  // Some versions take a circle after the one at home for reached.
+  const bool is_flown_to =
+      task == Task::waypoint || (is_circle && (is_copter || parameter("RTL_AUTOLAND") != 1));
   if (!(is_flown_to || lands) || !commands_[item].has_position() ||
       (is_copter && !lands && commands_[item].altitude_m == 0) ||
       formats::is_above_ground(commands_[item].frame)) {
@@ -349,7 +352,10 @@ void Walker::join_at(std::size_t n, std::size_t command, const Whereabouts& plac
 
 const FlownMission& Walker::rest_from(std::size_t n, std::size_t command, std::size_t item,
                                       const Whereabouts& arrival) {
-  const auto [known, is_new] = rests_.try_emplace({double(command), arrival.low_m, arrival.high_m});
+  // Whether it counts circles aright depends on what it flew before.
+  const double before = task_of(item) == Task::waypoint ? 0 : double(n);
+  const auto [known, is_new] =
+      rests_.try_emplace({double(command), arrival.low_m, arrival.high_m, before});
   if (!is_new) {
     return known->second;
   }

@@ -253,7 +253,7 @@ class Walker {
   int homes_set_ = 0;
   std::optional<Whereabouts> failsafe_;  ///< where it returns from, in place of the mission
   bool has_joined_ = false;              ///< the mission, on its return
-  std::map<std::array<double, 3>, FlownMission> rests_;  ///< by command and heights
+  std::map<std::array<double, 4>, FlownMission> rests_;  ///< by command, heights, and from where
   std::size_t known_parts_ = 0;
 };
 }  // namespace altiplan::host
