@@ -131,6 +131,48 @@ class Joins(unittest.TestCase):
             self.counts[0] += 1
             self.counts[1] += len(flown_to(nearest + 1e-3)) == 1 == len(told["joins"])
 
+    def test_known_joins(self):
+        """As ArduPilot's source has them; metres east and north of home, and above it."""
+        def placed(east, north, height):
+            return (HOME[0] + north / DEGREE, HOME[1] + east / DEGREE / math.cos(math.radians(HOME[0])), height)
+
+        def at(command, *place):
+            return (command, *(placed(*place) if place else (0, 0, 0)), 3 if place else 2)
+
+        flown = [at(16, 0, -500, 50), at(20)]
+        path = [at(188), at(16, 0, 0, 50), at(16, 400, 0, 50), at(16, 400, 400, 50), at(189)]
+        land = [at(16, 0, 600, 50), at(21, 0, 800, 0)]
+        auto_rtl, link_lost = {"FS_THR_ENABLE": 6}, {"FS_THR_ENABLE": 0, "FS_GCS_ENABLE": 6}
+        for name, items, place, parameters, joins in (
+                ("a leg is flown to its end, wherever on it", path, (150, 60, 50), auto_rtl, [5]),
+                ("the first item is taken where it is as near as its leg", path, (-200, 30, 50), auto_rtl, [4]),
+                ("behind a corner either leg may be", path, (500, -100, 50), auto_rtl, [5, 6]),
+                ("a path ends at a landing start", path, (0, 700, 50), auto_rtl, [6]),
+                ("its marker is the beginning of a leg", [at(188, -400, 0, 50), *path[1:]], (-200, 30, 50), auto_rtl, [4]),
+                ("but no place to fly to", [at(188, -400, 0, 50), *path[1:]], (-500, 30, 50), auto_rtl, [4]),
+                ("a landing start with a place ends the last leg", [*path[:4], at(189, 0, 500, 50)], (200, 460, 50), auto_rtl, [8]),
+                ("without one the landing ends it", path[:4], (0, 700, 50), auto_rtl, [8]),
+                ("height counts", [at(188), at(16, 0, 0, 30), at(16, 400, 0, 30), at(189), at(21, 800, 0, 0),
+                                   at(188), at(16, 0, 0, 130), at(16, 400, 0, 130), at(189)], (200, 0, 115), auto_rtl, [10]),
+                ("of two paths the nearer", [*path, at(21, 0, 900, 0), at(188), at(16, -600, 0, 50), at(16, -600, 300, 50),
+                                             at(189)], (-560, 200, 50), auto_rtl, [11]),
+                ("without a path the landing start whose item is nearer",
+                 [at(189), at(16, 500, 0, 50), at(21, 600, 0, 0), at(189), at(178), at(16, -500, 0, 50)],
+                 (-100, 0, 50), auto_rtl, [8]),
+                ("or which is nearer itself, before an item far away",
+                 [at(189), at(16, 500, 0, 50), at(21, 600, 0, 0), at(189, 100, 0, 50), at(16, -900, 0, 50)],
+                 (200, 0, 50), auto_rtl, [7]),
+                ("without either home", [], (100, 0, 50), auto_rtl, []),
+                ("a link to the ground station that is lost", path, (150, 60, 50), link_lost, [5])):
+            with self.subTest(name):
+                lat, lon, z = placed(*place)
+                told = self.told("copter", [*flown, *items, *land], (lat, lon, HOME[2] + z), 1, parameters)
+                self.assertEqual(told["joins"], joins, told)
+        for autoland, joins in ((4, [5]), (2, [8]), (1, [8]), (3, []), (0, [])):
+            lat, lon, z = placed(150, 60, 50)
+            told = self.told("plane", [*flown, *path, *land], (lat, lon, HOME[2] + z), 1, {"RTL_AUTOLAND": autoland})
+            self.assertEqual(told["joins"], joins, (autoland, told))
+
     def test_random_missions(self):
         self.counts = [0, 0]
         for seed in range(200 if NIGHTLY else 30):
