@@ -215,6 +215,8 @@ class Wing {
   /// where. With `circle_m` it climbs on a circle of that radius first.
   Whereabouts return_from(std::size_t command, const Whereabouts& place, const Destination& to,
                           double circle_m, double circle_at_home_m, double least_there);
+  /// Seconds on its circle until it is as high as that, at the most.
+  double to_reach_s(const Whereabouts& from, const Destination& to, double circle_m) const;
   /// From anywhere in a place straight to an item of a mission: where it passes that.
   Whereabouts join(std::size_t command, const Whereabouts& place, const Leg& leg);
   /// Is somewhere about the item that it passes, on any heading.

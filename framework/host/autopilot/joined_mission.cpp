@@ -55,7 +55,7 @@ std::vector<Walker::Failsafe> Walker::failsafes(std::size_t n) {
   const auto add = [&](const std::string& name, double value,
                        std::initializer_list<std::pair<int, std::optional<Failsafe>>> actions) {
     for (const auto& [action, failsafe] : actions) {
-      if (value == action) {
+      if (std::lround(value) == action) {
         if (failsafe && std::find(all.begin(), all.end(), *failsafe) == all.end()) {
           all.push_back(*failsafe);
         }
@@ -68,8 +68,7 @@ std::vector<Walker::Failsafe> Walker::failsafes(std::size_t n) {
   bool is_unknown = false;
   const auto battery_actions = [&](const auto& actions) {
     for (const auto& [name, value] : options_.parameters) {
-      if (name.starts_with("BATT") &&
-          (name.ends_with("_FS_LOW_ACT") || name.ends_with("_FS_CRT_ACT"))) {
+      if (is_battery_failsafe(name)) {
         is_unknown |= add(name, value.value, actions);
       }
     }
@@ -84,11 +83,12 @@ std::vector<Walker::Failsafe> Walker::failsafes(std::size_t n) {
     }
     battery_actions(of_battery);
   } else if (!is_px4()) {
-    const Actions of_link = {{0, {}}, {1, Failsafe::returns}, {4, {}}};  // 4: it flies on
-    const Actions of_battery = {{0, {}}, {1, Failsafe::returns}, {2, Failsafe::joins_landing}};
-    is_unknown |= add("FS_LONG_ACTN", parameter("FS_LONG_ACTN"), of_link);
+    // A battery's 2 jumps to a landing without a change of mode: the way there leads along the line
+    // from the item that it was sent to. A long 4 begins a mission again that has ended.
+    const Actions of_long = {{0, {}}, {1, Failsafe::returns}};
+    is_unknown |= add("FS_LONG_ACTN", parameter("FS_LONG_ACTN"), of_long);
     is_unknown |= add("FS_SHORT_ACTN", parameter("FS_SHORT_ACTN"), {{0, {}}, {3, {}}});
-    battery_actions(of_battery);
+    battery_actions(of_long);
   }
   if (all.empty() && !is_unknown) {
     all.push_back(Failsafe::returns);
@@ -215,7 +215,8 @@ bool Walker::is_on_way_home(std::size_t n) const {
   bool is_on_way = false;
   for (std::size_t k = 0; k <= n; ++k) {
     const int number = commands_[k].number;
-    const bool follows_item = k == 0 || commands_[k - 1].number <= kLastOfItems;
+    const bool follows_item =
+        k == 0 || (commands_[k - 1].number <= kLastOfItems && commands_.is_done(k - 1));
     const bool is_start = number == kReturnPathStart || number == kLandingStart;
     if (number == 21 || number == 85 || (is_start && follows_item)) {
       is_on_way = true;
@@ -236,6 +237,9 @@ bool Walker::may_return_from(const FlownPart& part) {
   }
   if (!part.is_return) {
     return true;
+  }
+  if (!is_px4() && autopilot_.is_copter()) {
+    return true;  // a mission's return is none of the mode's: the failsafe begins anew
   }
   mission_ = {};
   const std::vector<Failsafe> all = failsafes(part.command);

@@ -130,6 +130,13 @@ constexpr std::string_view kMayBeZero[] = {
     "DISARM_DELAY",    "LAND_FLARE_ALT",   "LAND_FLARE_SEC",  "WP_TER_MARGIN",   "LAND_SPD_HIGH_MS",
     "MIS_TKO_LAND_REQ"};
 
+/// Those that ArduPilot stores as whole numbers.
+constexpr std::string_view kWhole[] = {
+    "FS_SHORT_ACTN", "FS_THR_ENABLE",   "FS_GCS_ENABLE", "FS_LONG_ACTN",
+    "RTL_ALT_TYPE",  "RALLY_INCL_HOME", "FENCE_ENABLE",  "FENCE_AUTOENABLE",
+    "FENCE_TYPE",    "WP_LOITER_RAD",   "RTL_RADIUS",    "RTL_AUTOLAND",
+    "Q_OPTIONS",     "Q_RTL_MODE",      "MIS_OPTIONS",   "MIS_TKO_LAND_REQ"};
+
 void expect_possible(const Row& row, const ParameterValue& given) {
   const double value = given.value;
   const std::string_view name = row.name;
@@ -239,7 +246,11 @@ double Parameters::operator()(std::string_view name) const {
   const std::optional<ParameterValue> given = value_in(file_, row);
   const bool is_other = autopilot_.is_px4() && autopilot_.airframe == formats::Airframe::vtol &&
                         std::isfinite(row.px4_vtol);
-  const double value = given ? given->value : is_other ? row.px4_vtol : row.defaults[column];
+  double value = given ? given->value : is_other ? row.px4_vtol : row.defaults[column];
+  if (!autopilot_.is_px4() &&
+      std::find(std::begin(kWhole), std::end(kWhole), name) != std::end(kWhole)) {
+    value = std::round(value);
+  }
   if (given) {
     expect_possible(row, *given);
   }
@@ -284,7 +295,17 @@ std::string Parameters::of_another() const {
   return *most > has[own] ? kNames[std::size_t(most - has.begin())] : "";
 }
 
+bool is_battery_failsafe(std::string_view name) {
+  return name.starts_with("BATT") &&
+         (name.ends_with("_FS_LOW_ACT") || name.ends_with("_FS_CRT_ACT"));
+}
+
 bool decide_a_flight(const ParameterFile& file) {
+  const bool decides_returns = std::any_of(
+      file.begin(), file.end(), [](const auto& given) { return is_battery_failsafe(given.first); });
+  if (decides_returns) {
+    return true;
+  }
   return std::any_of(std::begin(kRows), std::end(kRows), [&](const Row& row) {
     return file.contains(row.name) || file.contains(row.old_name);
   });

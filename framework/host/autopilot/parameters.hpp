@@ -24,6 +24,8 @@ using ParameterFile = std::map<std::string, ParameterValue>;
 /// Reads Mission Planner's `.param` ("NAME,VALUE") or QGroundControl's `.params` (five columns, the
 /// third and fourth name and value). Throws Error naming the file and the line.
 ParameterFile read_parameters(const std::string& file);
+/// True of what a battery that is low has the vehicle do, by its number: BATT_FS_LOW_ACT, BATT2_….
+bool is_battery_failsafe(std::string_view name);
 /// False if an autopilot flies every mission with these as it does without.
 bool decide_a_flight(const ParameterFile& file);
 

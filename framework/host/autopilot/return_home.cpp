@@ -243,9 +243,12 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
     const Whereabouts from = failsafe_ ? *failsafe_ : wing_->whereabouts();
     Whereabouts circle =
         wing_->return_from(n, from, leg.to, is_px4() ? std::abs(own) : 0, radius, minimum);
-    circle.low_m = leg.to.low - kNearHeight;
-    circle.high_m = leg.to.high + kNearHeight;
     if (joined) {
+      // ModeRTL::navigate: near the height that it seeks when it takes up the circle, which may
+      // still be one of the slope there.
+      circle.low_m = leg.to.low - kNearHeight;
+      circle.high_m = std::max(leg.to.high, circle.high_m) + kNearHeight;
+      flight_.take({0, wing_->to_reach_s(from, leg.to, radius)});
       join_mission(n, *joined, circle);
     }
     return;

@@ -743,7 +743,14 @@ std::pair<Whereabouts, TimeSpan> Wing::add_ways(const Whereabouts& place, const 
   const bool is_near = length < 3 * turned_m;
   const double sunk = is_near ? 0 : std::max(0.0, kSlow * sink_mps_ / fast * (length - late_m));
   const double lag_m = sink_mps_ * lag_s_ / (kSlow * kSlow);
-  const double last_high = std::min(std::max(top, to.high), std::max(to.high, top - sunk) + lag_m);
+  double last_high = std::min(std::max(top, to.high), std::max(to.high, top - sunk) + lag_m);
+  if (slope_min_m_ > 0 && top - to.high >= slope_min_m_) {
+    // On a line to the middle of its circle, that it takes up before.
+    const double begun_m = std::max(length - place.radius_m, 1.0);
+    const double left_m = circle_there_m + 1.5 * l1_s_ * fast + place.radius_m;
+    const double share = std::min(left_m / begun_m, 1.0);
+    last_high = std::max(last_high, to.high + share * (top - to.high) + lag_m);
+  }
   return {{to.at, 0, is_near ? std::min(bottom, last_low) : last_low, last_high}, time};
 }
 
@@ -757,6 +764,13 @@ Whereabouts Wing::return_from(std::size_t command, const Whereabouts& place, con
   flight_.begin(command, "the circle at home");
   flight_.add_tower(home, std::min(home.low_m, least_there), home.high_m, kBesideTrack);
   return home;
+}
+
+double Wing::to_reach_s(const Whereabouts& from, const Destination& to, double circle_m) const {
+  const double slow = true_speed(0, std::min(from.low_m, to.low));
+  const double climb_s = std::max(to.high - from.low_m, 0.0) / (kSlowClimb * climb_mps_);
+  const double sink_s = std::max(from.high_m - to.low, 0.0) / (kSlow * sink_mps_);
+  return 2 * kPi * widest_radius(circle_m, to.high) / slow + std::max(climb_s, sink_s);
 }
 
 Whereabouts Wing::join(std::size_t command, const Whereabouts& place, const Leg& leg) {

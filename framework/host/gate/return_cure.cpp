@@ -225,8 +225,7 @@ std::vector<int> markers_of_returns(formats::Autopilot autopilot, const Paramete
   const bool joins = std::any_of(given.begin(), given.end(), [&](const auto& parameter) {
     const std::string& name = parameter.first;
     return parameter.second.value == kAlongMission &&
-           (name == "FS_THR_ENABLE" || name == "FS_GCS_ENABLE" || name.ends_with("_FS_LOW_ACT") ||
-            name.ends_with("_FS_CRT_ACT"));
+           (name == "FS_THR_ENABLE" || name == "FS_GCS_ENABLE" || is_battery_failsafe(name));
   });
   return joins ? std::vector{kReturnPathStart, kLandingStart} : std::vector<int>{};
 }
