@@ -314,6 +314,13 @@ class Returns(PlanCase):
         way = [(22, 0, 0, 60), (16, -300, 0, 60), (21, -300, 100, 0), (188,), (16, -200, 100, 60), (16, -100, 100, 60)]
         told = self.returns(COPTER, way, parameters=self.AUTO_RTL, code=1)
         self.assertIn("ends in the air", str(told["returns"]["refused"]))
+        # Where the mission is on it already, too; and one that waits for its pilot.
+        told = self.returns(COPTER, way[:2] + way[3:], parameters=self.AUTO_RTL, code=1)
+        self.assertIn("ends in the air", str(told["returns"]["refused"]))
+        self.assertGreater(told["returns"]["refused"][-1]["to_s"], sum(told["parts"][-1]["time_s"]) / 2 - 1)
+        told = self.returns(COPTER, way[:2] + way[3:5] + [(17, -100, 100, 60), (21, -100, 0, 0)],
+                            parameters=self.AUTO_RTL, code=1)
+        self.assertIn("stays here for ever", str(told["returns"]["refused"]))
 
     def test_an_aeroplane_that_joins_the_mission(self):
         way = [(16, 300, 0, 260), (16, 1400, 0, 260), (16, 2000, 0, 260), (188,), (16, 2300, 300, 160), (189,),

@@ -330,7 +330,7 @@ void add_check(App& app, Action& action) {
   command
       .add_option("--fix-returns FILE", arguments.mission.plan.fixed_returns,
                   "with --returns: write the minimum return height with which all pass "
-                  "(.param), or the mission with rally points (.plan)")
+                  "(.param), or the mission so cured (.plan)")
       ->needs(outputs->back());
   command
       .add_flag("--survey", arguments.survey,

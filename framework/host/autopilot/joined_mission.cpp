@@ -224,10 +224,15 @@ bool Walker::is_on_way_home(std::size_t n) const {
       is_on_way = false;
     }
   }
+  bool lands = false;
   for (std::size_t k = 0; k < commands_.size(); ++k) {
-    is_on_way = is_on_way && !commands_.is_jump(k);
+    const Task task = task_of(k);
+    is_on_way =
+        is_on_way && !commands_.is_jump(k) && (k < n || lands || task != Task::loiter_forever);
+    lands = lands || (k >= n &&
+                      (task == Task::land || task == Task::vtol_land || task == Task::return_home));
   }
-  return is_on_way;
+  return is_on_way && lands;
 }
 
 bool Walker::may_return_from(const FlownPart& part) {
