@@ -383,10 +383,16 @@ bool BandJudge::is_valid(const FlownPart& part) const {
                   [&](const Strip& strip) { return is_above_void(strip); })) {
     return false;
   }
-  const bool may_block = !sky_.layers().empty() && !part.strips.empty();
-  if (may_block && !look_at_suspects(part.strips, [&](const Line& line) {
-        return leg_ok(std::nullopt, line.leg, within(line.reach_m).sky);
-      })) {
+  const bool may_block = !sky_.layers().empty() && !part.strips.empty() && !is_clear(part.strips);
+  const auto is_in_sky = [&](const Line& line) {
+    return leg_ok(std::nullopt, line.leg, within(line.reach_m).sky);
+  };
+  // Lower edges first: what blocks most zones find soonest.
+  const auto is_low_in_sky = [&](const Strip& strip) {
+    return is_in_sky({Leg::straight(strip.from, strip.to), strip.reach_m});
+  };
+  if (may_block && !(std::all_of(part.strips.begin(), part.strips.end(), is_low_in_sky) &&
+                     look_at_suspects(part.strips, is_in_sky))) {
     return false;
   }
   const auto is_line_valid = [&](const Line& line) {
