@@ -339,6 +339,24 @@ class Returns(PlanCase):
         told = self.returns(PLANE, way, parameters={"RTL_AUTOLAND": 4}, code=1)
         self.assertIn("the way back to the mission: ", str(told["returns"]["refused"]))
 
+    def test_a_copters_own_return_begins_anew(self):
+        """A failsafe during it climbs once more, and chooses its place from there."""
+        way = [(22, 0, 0, 30), (16, -400, 0, 30), (20, 0, 0)]
+        for climb, verdict in ((0, "pass"), (20, "fail")):
+            told = self.returns(COPTER, way, "--max-agl", "60", parameters={"RTL_CLIMB_MIN_M": climb})
+            self.assertEqual((told["verdict"], told["returns"]["verdict"]), ("pass", verdict), told["returns"])
+        self.assertEqual(told["returns"]["refused"][0]["item"], 3)
+
+    def test_an_aeroplane_waits_on_its_circle_for_its_height(self):
+        """Before it joins its landing: 300 m take it more than a minute."""
+        way = [(16, -300, 300, 60), (16, -300, 900, 60), (189,), (16, -300, -100, 60), (21, -300, -1000, 0)]
+        needed = []
+        for height in (60, 360):
+            told = self.returns(PLANE, way, "--battery", "1", "--power", "120", "--reserve", "0",
+                                parameters={"RTL_AUTOLAND": 1, "RTL_ALTITUDE": height})
+            needed.append(max(one["value"] for one in told["returns"]["refused"] if one["rule"] == "energy"))
+        self.assertGreater(needed[1] - needed[0], 120 / 60)
+
     def test_px4_returns_in_a_cone(self):
         way = [(22, 0, 0, 60), (16, 60, 0, 60), (16, 60, 60, 5), (16, 20, 0, 5)]
         told = self.returns(PX4_COPTER, way, code=0)
