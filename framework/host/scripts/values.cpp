@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "altiplan/error.hpp"
+
 namespace altiplan::host {
 namespace {
 
