@@ -131,7 +131,19 @@ class WindGrid(unittest.TestCase):
         self.grid("lonlat.tif", [[0] * 4] * 3, [[0] * 4] * 3, (8, 47), 0.25, system=("-a_srs", "EPSG:4326"))
         self.assertIn("no place on the Earth", refusal("grid: lonlat.tif"))
         self.gdal("gdal_translate", "-q", "-b", "1", "lonlat.tif", "one.tif")
-        self.assertIn("give bands", refusal("grid: one.tif"))
+        self.assertIn("has one band, expected two", refusal("grid: one.tif"))
+        self.assertIn("bands are the same twice", refusal("grid: small.tif, bands: [1, 1]"))
+        for name, said, options in (("scaled.tif", "band 1 has a scale or an offset", ("-a_scale", "10")),
+                                    ("moved.tif", "band 1 has a scale or an offset", ("-a_offset", "1")),
+                                    ("complex.tif", "holds complex numbers", ("-ot", "CFloat32")),
+                                    ("large.tif", "has more than 4000000 cells", ("-outsize", "3000", "2000"))):
+            self.gdal("gdal_translate", "-q", *options, "small.tif", name)
+            self.assertIn(said, refusal(f"grid: {name}"))
+        self.gdal("gdal_translate", "-q", "-of", "VRT", "small.tif", "knots.vrt")
+        knots = self.folder / "knots.vrt"
+        knots.write_text(knots.read_text().replace("<ColorInterp>Gray", "<UnitType>kt</UnitType><ColorInterp>Gray"))
+        self.gdal("gdal_translate", "-q", "knots.vrt", "knots.tif")
+        self.assertIn("band 1 is in 'kt', expected m/s", refusal("grid: knots.tif"))
         self.assertIn("has no band 3", refusal("grid: small.tif, bands: [1, 3]"))
         (self.folder / "none.tif").write_text("nothing")
         self.assertIn("none.tif", refusal("grid: none.tif"))

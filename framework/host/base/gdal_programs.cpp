@@ -11,9 +11,6 @@
 namespace altiplan::host {
 namespace {
 
-/// Of a program, for images of many gigabytes.
-constexpr auto kLongestRun = std::chrono::minutes(10);
-
 std::string program_of(const char* name, const std::string& who) {
   const auto found = find_on_path({name});
   if (!found) {
@@ -46,7 +43,7 @@ std::string GdalPrograms::run(std::vector<std::string> arguments) const {
   const std::filesystem::path errors = in_folder("errors.txt");
   std::filesystem::remove(errors);
   Program program(std::move(arguments), {.wired = {1}, .errors = errors});
-  const auto end = Program::Clock::now() + kLongestRun;
+  const auto end = Program::Clock::now() + longest_;
   std::string printed;
   while (program.receive(printed, end)) {
   }
@@ -54,7 +51,7 @@ std::string GdalPrograms::run(std::vector<std::string> arguments) const {
   const std::string said = first_complaint(formats::read_file(errors));
   if (code != 0 || !said.empty()) {
     throw Error(file_ + ": " + name + ": " +
-                (!code          ? "not done within 10 minutes"
+                (!code          ? "not done within " + std::to_string(longest_.count()) + " s"
                  : said.empty() ? "ended early"
                                 : said));
   }

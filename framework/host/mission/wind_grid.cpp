@@ -2,6 +2,8 @@
 #include "host/mission/wind_grid.hpp"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -17,6 +19,7 @@ namespace {
 using Place = std::array<double, 2>;
 
 constexpr double kMaxCells = 4e6;
+constexpr std::chrono::seconds kLongest{60};  ///< of GDAL's programs
 /// No other formats are opened: some read further files, or the network.
 const std::vector<std::string> kInputs{"-if", "GTiff", "-if", "GRIB"};
 /// Faster than any wind: a file in other units, or of other things.
@@ -26,13 +29,17 @@ constexpr double kFastest = 150;
 class File {
  public:
   File(const std::string& file, const std::vector<int>& bands)
-      : file_(file), gdal_("wind.grid", file) {
+      : file_(file), gdal_("wind.grid", file, kLongest) {
     if (const std::string why = formats::why_unreadable(file); !why.empty()) {
       throw Error(file + ": " + why);
     }
-    const Json info = parse_json(gdal("gdalinfo", {"-json"}, {}));
+    const Json info = described();
     for (std::size_t axis = 0; axis < 2; ++axis) {
       counts_[axis] = info.at("size").at(axis).get<int>();
+    }
+    if (double(counts_[0]) * double(counts_[1]) > kMaxCells) {
+      refuse("has more than " + std::to_string(std::size_t(kMaxCells)) +
+             " cells: cut those of the volume out of it (gdal_translate -projwin)");
     }
     const Json& transform = info.value("geoTransform", Json());
     if (transform.is_null() || transform.at(2) != 0 || transform.at(4) != 0 ||
@@ -104,6 +111,31 @@ class File {
     return gdal_.run(std::move(arguments));
   }
 
+  Json described() const {
+    const std::string printed = gdal("gdalinfo", {"-json"}, {});
+    try {
+      return parse_json(printed);
+    } catch (const Json::exception&) {  // it writes nan
+      refuse("has a georeference, or values, that gdalinfo cannot describe");
+    }
+  }
+
+  /// Throws Error unless a band holds plain metres a second.
+  void expect_plain(const Json& band) const {
+    const std::string name = "band " + std::to_string(band.at("band").get<int>());
+    if (band.value("scale", 1.0) != 1 || band.value("offset", 0.0) != 0) {
+      refuse(name + " has a scale or an offset: gdal_translate -unscale writes plain values");
+    }
+    if (band.value("type", "").starts_with("C")) {
+      refuse(name + " holds complex numbers, expected metres a second");
+    }
+    const std::string unit = band.value("unit", "");
+    constexpr std::array kUnits{"", "m/s", "[m/s]", "m s-1", "m s**-1", "metre/second"};
+    if (std::find(kUnits.begin(), kUnits.end(), unit) == kUnits.end()) {
+      refuse(name + " is in '" + unit + "', expected m/s");
+    }
+  }
+
   static std::string element(const Json& band) {
     return band.value("metadata", Json::object())
         .value("", Json::object())
@@ -123,9 +155,11 @@ class File {
       return {1, 2};
     }
     if (found.size() != 2) {
-      refuse(
-          "has " + std::to_string(bands.size()) +
-          " bands: give bands, the numbers of those toward east and north (gdalinfo lists them)");
+      refuse(bands.size() < 2
+                 ? "has one band, expected two: winds toward east and north"
+                 : "has " + std::to_string(bands.size()) +
+                       " bands: give bands, the numbers of those toward east and north (gdalinfo "
+                       "lists them)");
     }
     return found;
   }
@@ -133,11 +167,16 @@ class File {
   void read(const Json& bands, const std::vector<int>& numbers) {
     std::vector<std::string> options{"-q",      "-of", "ENVI",          "-ot",
                                      "Float32", "-co", "INTERLEAVE=BSQ"};
+    if (numbers[0] == numbers[1]) {
+      refuse("bands are the same twice, expected those toward east and north");
+    }
     for (std::size_t n = 0; n < 2; ++n) {
       if (std::size_t(numbers[n]) > bands.size()) {
         refuse("has no band " + std::to_string(numbers[n]));
       }
-      const std::string name = element(bands.at(std::size_t(numbers[n]) - 1));
+      const Json& band = bands.at(std::size_t(numbers[n]) - 1);
+      expect_plain(band);
+      const std::string name = element(band);
       if (!name.empty() && name != (n == 0 ? "UGRD" : "VGRD")) {
         refuse("band " + std::to_string(numbers[n]) + " is " + name + ", expected " +
                (n == 0 ? "UGRD, toward east" : "VGRD, toward north"));

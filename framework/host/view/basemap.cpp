@@ -30,6 +30,7 @@ constexpr double kReadPerPixel = 4;
 /// thin plate splines.
 constexpr int kPlaces = 10;
 constexpr const char* kNeeds = "--basemap";
+constexpr std::chrono::minutes kLongest{10};  ///< of GDAL's programs, for images of many gigabytes
 /// No other formats are opened: some read further files, or the network.
 const Texts kInputs{"-if", "GTiff", "-if", "MBTiles"};
 
@@ -37,7 +38,7 @@ const Texts kInputs{"-if", "GTiff", "-if", "MBTiles"};
 class Warp {
  public:
   Warp(std::string file, const Frame& frame, const Box& box)
-      : file_(std::move(file)), frame_(frame), box_(box), gdal_(kNeeds, file_) {}
+      : file_(std::move(file)), frame_(frame), box_(box), gdal_(kNeeds, file_, kLongest) {}
 
   /// A WebP over the box, and nothing where the file has none.
   std::vector<std::byte> operator()() {

@@ -181,7 +181,7 @@ class LegJudge {
   bool keeps_course() const {
     return turn_ != nullptr || request_.wind.is_calm() || !has_heading(leg_) ||
            std::isfinite(flight_time(a_, b_, request_.air_speed(), request_.wind)) || report_([&] {
-             const double wind = request_.wind.at((a_ + b_) / 2).norm();
+             const double wind = request_.wind.at(beaten_at()).norm();
              return Violation{
                  "wind",
                  at_,
@@ -192,6 +192,22 @@ class LegJudge {
                  "",
                  "m/s"};
            });
+  }
+
+  /// Where on a leg that cannot be flown its course is not held.
+  Vec3 beaten_at() const {
+    std::vector<double> ends = request_.wind.crossings(a_, b_);
+    ends.push_back(1);
+    double begin = 0;
+    for (const double end : ends) {
+      const Vec3 from = a_ + begin * (b_ - a_);
+      const Vec3 to = a_ + end * (b_ - a_);
+      if (!std::isfinite(flight_time(from, to, request_.air_speed(), request_.wind))) {
+        return (from + to) / 2;
+      }
+      begin = end;
+    }
+    return (a_ + b_) / 2;
   }
 
   bool keeps_size() const {

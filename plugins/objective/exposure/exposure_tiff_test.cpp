@@ -15,7 +15,7 @@ using exposure_test::Values;
 class TiffText {
  public:
   TiffText(const Values& values, std::uint16_t crs_key, std::uint16_t crs, double west,
-           double north, double step) {
+           double north, double step, const std::string& metadata = "") {
     std::string pixels;
     for (int j = values.rows - 1; j >= 0; --j) {
       for (int i = 0; i < values.columns; ++i) {
@@ -35,6 +35,9 @@ class TiffText {
     add<double>(33550, 12, {step, step, 0});
     add<double>(33922, 12, {0, 0, 0, west, north, 0});
     add<std::uint16_t>(34735, 3, {1, 1, 0, 2, 1025, 0, 1, 1, crs_key, 0, 1, crs});
+    if (!metadata.empty()) {
+      add<char>(42112, 2, {metadata.c_str(), metadata.c_str() + metadata.size() + 1});
+    }
     add<char>(42113, 2, {'-', '9', '\0'});
     data_ = pixels;
     const std::uint32_t directory = std::uint32_t(8 + pixels.size());
@@ -134,6 +137,12 @@ TEST(ExposureTiff, WhatIsNoGridInTheFrameIsRefused) {
   EXPECT_NE(refusal(utm.text(), Frame()).find("no place on the Earth"), std::string::npos);
   const TiffText own(values, 3072, 32767, 0, 0, 10);
   EXPECT_NE(refusal(own.text(), Frame()).find("none of EPSG's"), std::string::npos);
+  const TiffText scaled(
+      values, 2048, 4326, 10, 51, 1e-3,
+      "<GDALMetadata>\n  <Item name=\"SCALE\" sample=\"0\" role=\"scale\">10</Item>"
+      "\n</GDALMetadata>\n");
+  EXPECT_NE(refusal(scaled.text(), Frame::geographic(10, 50, 50)).find("scale or an offset"),
+            std::string::npos);
   EXPECT_NE(refusal("no TIFF", Frame()).find("is no TIFF file"), std::string::npos);
   std::string cut = utm.text();
   cut.resize(40);

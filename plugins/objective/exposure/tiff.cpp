@@ -76,6 +76,14 @@ double nodata_of(TIFF* tiff) {
   return value;
 }
 
+/// True of GDAL's metadata with a factor or a summand for the values.
+bool is_scaled(TIFF* tiff) {
+  constexpr std::uint32_t kMetadata = 42112;
+  const std::vector<char> letters = tags<char>(tiff, kMetadata);
+  const std::string text(letters.begin(), letters.end());
+  return text.find("role=\"scale\"") != text.npos || text.find("role=\"offset\"") != text.npos;
+}
+
 /// Of the keys: the coordinate system, and whether values belong to points of it.
 void read_keys(TIFF* tiff, Raster& raster, bool& points) {
   constexpr std::uint32_t kDirectory = 34735;
@@ -176,6 +184,9 @@ Raster read_tiff(const std::string& file) {
   }
   if (tag<std::uint16_t>(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, 1) != 1) {
     throw Error("has several bands, expected one");
+  }
+  if (is_scaled(tiff.get())) {
+    throw Error("has values with a scale or an offset: gdal_translate -unscale writes plain ones");
   }
   const auto scale = tags<double>(tiff.get(), pixel_scale);
   const auto tie = tags<double>(tiff.get(), tie_point);
