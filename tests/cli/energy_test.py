@@ -70,7 +70,7 @@ class Energy(case.CliCase):
     def test_climbs_and_corners(self):
         metrics, ways = self.metrics("{speed_mps: 8, climb_mps: 2, sink_mps: 1}")
         def seconds(way):
-            return max(math.hypot(*way) / 8, way[2] / 2, -way[2])
+            return max(math.hypot(*way[:2]) / 8, way[2] / 2, -way[2])
         self.same(metrics["time_s"], sum(map(seconds, ways)))
         self.same(metrics["time_s"], metrics["duration_s"])
         times = [self.metrics("{speed_mps: 8, acceleration_mps2: 2%s}" % more)[0]["time_s"]
@@ -178,7 +178,7 @@ goal: {at_m: [2700, 2000, 50]}
         for name, speed, climb, sink in (("arducopter", 10, 2.5, 1.5), ("px4_mc", 5, 3, 1.5)):
             metrics, ways = self.metrics("{performance: %s}" % name)
             self.same(metrics["duration_s"],
-                      sum(max(math.hypot(*way) / speed, way[2] / climb, -way[2] / sink) for way in ways))
+                      sum(max(math.hypot(*way[:2]) / speed, way[2] / climb, -way[2] / sink) for way in ways))
             self.assertGreater(metrics["time_s"], metrics["duration_s"] + 2)
             own = self.metrics("{performance: %s, speed_mps: 4, climb_mps: 0.5}" % name)[0]
             self.assertGreater(own["duration_s"], metrics["duration_s"])

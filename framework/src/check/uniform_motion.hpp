@@ -10,14 +10,17 @@ namespace altiplan {
 
 /// Calls `use(begin, end, seconds)`, in metres along the straight leg a–b, for each part that the
 /// vehicle flies at one speed, by its speed profile, or as fast as its rates of climb and sink
-/// allow.
+/// allow. With such rates its speed is that over the ground, as of autopilots that hover: along a
+/// slope it is faster.
 template <class Use>
 void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, const Vec3& b,
                    const Use& use) {
   const double total = (b - a).norm();
   const double changes_height_s = vehicle.climb_time(b.z() - a.z());
+  const bool is_level_speed = std::isfinite(vehicle.climb_mps) && std::isfinite(vehicle.sink_mps);
+  const double level = is_level_speed && total > 0 ? (b - a).head<2>().norm() / total : 1;
   if (vehicle.speed_near.empty()) {
-    use(0, total, std::max(total / vehicle.speed_mps, changes_height_s));
+    use(0, total, std::max(level * total / vehicle.speed_mps, changes_height_s));
     return;
   }
   // Clearance changes by at most a metre per metre: the speed is constant until a threshold can be
@@ -32,7 +35,7 @@ void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, co
     }
     step = std::min(std::max(step, kMinStep), total - along);
     use(along, along + step,
-        std::max(step / vehicle.speed_at(clearance), step / total * changes_height_s));
+        std::max(level * step / vehicle.speed_at(clearance), step / total * changes_height_s));
     along += step;
   }
 }

@@ -61,7 +61,10 @@ class FlightEnergy final : public Objective {
     const double wind = request.wind.max_speed();
     if (!request.vehicle.wing) {
       const double fast = fastest(request.vehicle);
-      return wind > (kAirspeeds - 1) * fast ? 0 : std::max(way.norm() / fast, climbs_s);
+      const Vehicle& vehicle = request.vehicle;
+      const bool has_rates = std::isfinite(vehicle.climb_mps) && std::isfinite(vehicle.sink_mps);
+      const double length = has_rates ? way.head<2>().norm() : way.norm();
+      return wind > (kAirspeeds - 1) * fast ? 0 : std::max(length / fast, climbs_s);
     }
     return std::max(way.head<2>().norm() / (request.air_speed() + wind), climbs_s);
   }

@@ -84,11 +84,15 @@ class FlightTime final : public Objective {
     for (const SpeedNear& near : vehicle.speed_near) {
       fastest = std::max(fastest, near.speed_mps);
     }
-    const double over = params_.above_m ? std::max(0.0, from.z() - *params_.above_m) +
-                                              std::max(0.0, to.z() - *params_.above_m)
-                                        : kInfinity;
-    const double seconds = std::min(way.norm(), over) / fastest;
-    return params_.above_m ? seconds : std::max(seconds, vehicle.climb_time(way.z()));
+    const bool has_rates = std::isfinite(vehicle.climb_mps) && std::isfinite(vehicle.sink_mps);
+    const double straight_s = (has_rates ? way.head<2>().norm() : way.norm()) / fastest;
+    if (!params_.above_m) {
+      return std::max(straight_s, vehicle.climb_time(way.z()));
+    }
+    const double down = std::max(0.0, from.z() - *params_.above_m);
+    const double up = std::max(0.0, to.z() - *params_.above_m);
+    return std::min(straight_s, has_rates ? vehicle.climb_time(-down) + vehicle.climb_time(up)
+                                          : (down + up) / fastest);
   }
 
   std::string do_unit() const override { return "s"; }

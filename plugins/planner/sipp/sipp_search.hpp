@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "altiplan/kit/lattice/lattice_search.hpp"
 #include "altiplan/kit/lattice/open_list.hpp"
+#include "altiplan/measures.hpp"
 #include "safe_times.hpp"
 
 namespace altiplan::sipp {
@@ -41,9 +43,9 @@ class Search : kit::LatticeSearch {
         movers_(movers),
         closures_(closures),
         needed_(std::max(request.limits.min_clearance, request.vehicle.radius_m)),
-        speed_(request.vehicle.speed_mps),
+        fastest_(fastest_of(request.vehicle)),
         first_(lattice.size(), kNone) {
-    open_.clear(std::max((goal_ - start_).norm() / speed_, 1.0) * 1e-12);
+    open_.clear(std::max((goal_ - start_).norm() / fastest_, 1.0) * 1e-12);
     for (kit::DirectionMask left = lattice.steps(); left != 0; left &= left - 1) {
       longest_leg_ = std::max(longest_leg_, lattice.step_length(__builtin_ctz(left)));
     }
@@ -134,10 +136,20 @@ class Search : kit::LatticeSearch {
     return first;
   }
 
+  static double fastest_of(const Vehicle& vehicle) {
+    const double vertical = std::max(vehicle.climb_mps, vehicle.sink_mps);
+    return std::isfinite(vertical) ? std::hypot(vehicle.speed_mps, vertical) : vehicle.speed_mps;
+  }
+  double seconds(const Vec3& from, const Vec3& to, double length) const {
+    const Vehicle& vehicle = request_.vehicle;
+    const bool has_rate = std::isfinite(vehicle.climb_mps) || std::isfinite(vehicle.sink_mps);
+    return has_rate ? leg_duration(Leg::straight(from, to), request_) : length / vehicle.speed_mps;
+  }
+
   void push(std::uint32_t index, const Cell& c) {
     ++progress_.generated;
     const double g = states_[index].g;
-    open_.push(g + to_goal_(c) / speed_, g, index);
+    open_.push(g + to_goal_(c) / fastest_, g, index);
   }
 
   /// Sets `unsafe_` to the times at which a vehicle at p meets something.
@@ -209,7 +221,7 @@ class Search : kit::LatticeSearch {
   /// Reaches every safe interval of the cell that a leg from the state reaches, as early as it
   /// does.
   void move(std::uint32_t from, const Vec3& p, const Cell& c, const Vec3& q, double length) {
-    const double duration = length / speed_;
+    const double duration = seconds(p, q, length);
     std::uint32_t to = states_of(c, q);
     const State here = states_[from];
     bool is_known = false;
@@ -246,7 +258,7 @@ class Search : kit::LatticeSearch {
       const State& state = states_[index];
       request_.trace->add({TraceEvent::Kind::expanded, std::int64_t(index),
                            state.parent == kNone ? -1 : std::int64_t(state.parent), here,
-                           state.g + to_goal_(c) / speed_});
+                           state.g + to_goal_(c) / fastest_});
     }
     note_near(here);
     try_goal(index, c, here);
@@ -264,7 +276,7 @@ class Search : kit::LatticeSearch {
     const State& state = states_[index];
     if (const kit::Lattice::Link* link = to_goal_.link_of(c)) {
       if (link->length == 0 || rules_.any_leg_ok(std::nullopt, here, goal_)) {
-        const double duration = link->length / speed_;
+        const double duration = seconds(here, goal_, link->length);
         find_unsafe_departures(state, here, goal_, duration);
         const double leaves = link->length == 0 ? state.g : departure(state.g, state.safe.end);
         if (leaves + duration < goal_g_) {
@@ -340,8 +352,8 @@ class Search : kit::LatticeSearch {
 
   const std::vector<Mover>& movers_;
   const std::vector<Closure>& closures_;
-  double needed_;  ///< distance from closures
-  double speed_;
+  double needed_;                     ///< distance from closures
+  double fastest_;  ///< speed in the fastest direction
   double longest_leg_ = 0;            ///< of steps and links
   std::vector<std::uint32_t> first_;  ///< by cell: the first of its states
   std::vector<State> states_;
