@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -54,7 +55,13 @@ class TimedReach {
   }
   Vec3 place(const Cell& c) const { return low_ + cell_m_ * Vec3(c[0], c[1], c[2]); }
   double duration(const Cell& a, const Cell& b) const {
-    return (place(b) - place(a)).norm() / request_.vehicle.speed_mps;
+    const Vec3 way = place(b) - place(a);
+    const Vehicle& vehicle = request_.vehicle;
+    if (!std::isfinite(vehicle.climb_mps)) {
+      return way.norm() / vehicle.speed_mps;
+    }
+    return std::max({way.head<2>().norm() / vehicle.speed_mps, way.z() / vehicle.climb_mps,
+                     -way.z() / vehicle.sink_mps});
   }
 
   template <class Use>

@@ -44,6 +44,10 @@ SmallWorld small_world(std::uint64_t seed) {
   world.request = testing::request_in(empty.with_moving(std::move(movers)), {5, 5, 5}, {45, 45, 15},
                                       {{0, 0, 0}, {50, 50, 20}});
   world.request.vehicle.speed_mps = 5;
+  if (seed % 2 == 0) {
+    world.request.vehicle.climb_mps = 2;
+    world.request.vehicle.sink_mps = 3;
+  }
   world.request.limits.min_clearance = world.request.vehicle.radius_m = 1;
   return world;
 }
