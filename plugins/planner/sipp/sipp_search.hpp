@@ -353,7 +353,7 @@ class Search : kit::LatticeSearch {
   const std::vector<Mover>& movers_;
   const std::vector<Closure>& closures_;
   double needed_;                     ///< distance from closures
-  double fastest_;  ///< speed in the fastest direction
+  double fastest_;                    ///< speed in the fastest direction
   double longest_leg_ = 0;            ///< of steps and links
   std::vector<std::uint32_t> first_;  ///< by cell: the first of its states
   std::vector<State> states_;

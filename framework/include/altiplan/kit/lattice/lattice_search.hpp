@@ -157,8 +157,8 @@ struct SearchStats {
   std::int64_t generated = 0;
   Vec3 nearest{0, 0, 0};  ///< the expanded cell nearest to the goal
   bool memory_full = false;
-  bool too_long = false;  ///< route_length refused something
-  std::string pruned_by;  ///< the limit on a total that refused something
+  bool too_long = false;           ///< route_length refused something
+  std::string pruned_by;           ///< the limit on a total that refused something
   std::optional<Vec3> unpriced{};  ///< the end of a leg that the objective has no cost for
 };
 
