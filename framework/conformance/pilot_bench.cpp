@@ -45,17 +45,6 @@ Observation first_observation(const Request& request) {
   return seen;
 }
 
-namespace {
-
-double top_speed(const Vehicle& vehicle) {
-  double top = vehicle.speed_mps;
-  for (const SpeedNear& near : vehicle.speed_near) {
-    top = std::max(top, near.speed_mps);
-  }
-  return top;
-}
-}  // namespace
-
 std::string text(const Observation& seen) {
   return "observed at " + text(seen.state.position) + ", velocity " + text(seen.state.velocity) +
          ", after " + text(seen.state.time_s) + " s";
@@ -74,7 +63,7 @@ void judge(Report& report, const PilotStep& step, const Observation& seen, const
            text(seen.max_dt_s) + " s";
   });
   const double way = (step.next.position - seen.state.position).norm();
-  const double max_way = top_speed(request.vehicle) * dt;
+  const double max_way = request.vehicle.max_speed() * dt;
   // A pilot that continues from its own last answer appears to leap from its new position.
   const bool leaps = way > 3 * max_way + kLengthTolerance;
   report.expect(
@@ -82,10 +71,10 @@ void judge(Report& report, const PilotStep& step, const Observation& seen, const
         return text(seen) + ": the pilot moves " + text(way) + " m in " + text(dt) + " s to " +
                text(step.next.position) + ", the vehicle's speed allows " + text(max_way) + " m";
       });
-  report.expect(step.next.velocity.norm() <= top_speed(request.vehicle) * (1 + 1e-9) + 1e-9,
+  report.expect(step.next.velocity.norm() <= request.vehicle.max_speed() * (1 + 1e-9) + 1e-9,
                 kTimeAndSpeed, [&] {
                   return text(seen) + ": the pilot's velocity is " + text(step.next.velocity) +
-                         ", the vehicle flies " + text(top_speed(request.vehicle)) + " m/s";
+                         ", the vehicle flies " + text(request.vehicle.max_speed()) + " m/s";
                 });
   report.expect(
       step.outcome != PilotStep::Outcome::arrived || seen.goal.reached_at(step.next.position),

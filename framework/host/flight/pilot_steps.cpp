@@ -39,7 +39,7 @@ void Flight::fly_pilot() {
   }
   const double dt = step.next.time_s - state_.time_s;
   const double run = (step.next.position - state_.position).norm();
-  if (run > top_speed(request_.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
+  if (run > request_.vehicle.max_speed() * dt * (1 + 1e-6) + kLengthTolerance) {
     throw PluginError("violated the contract of its interface: a step faster than the vehicle",
                       Reason::contract);
   }

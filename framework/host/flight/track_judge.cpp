@@ -82,7 +82,7 @@ class Replay {
     const auto& [t1, b] = to;
     const double run = (b - a).norm();
     const bool has_own_limit = telemetry_ || request_.vehicle.wing;
-    const double fastest = has_own_limit ? kInfinity : top_speed(request_.vehicle);
+    const double fastest = has_own_limit ? kInfinity : request_.vehicle.max_speed();
     if (!(t1 > t0) || run > fastest * (t1 - t0) * (1 + 1e-6) + kLengthTolerance) {
       found().push_back({"speed", at, t1 > t0 ? run / (t1 - t0) : kInfinity, fastest,
                          "the track is faster than the vehicle there", "", "m/s"});
@@ -270,13 +270,5 @@ Violation not_visited(const FlightEvent::Near& target, const Track& track) {
           "the track does not visit the target at " + place(target.at),
           "",
           "m"};
-}
-
-double top_speed(const Vehicle& vehicle) {
-  double top = vehicle.speed_mps;
-  for (const SpeedNear& near : vehicle.speed_near) {
-    top = std::max(top, near.speed_mps);
-  }
-  return top;
 }
 }  // namespace altiplan::host

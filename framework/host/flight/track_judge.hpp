@@ -78,7 +78,4 @@ double distance_from(const Goal& goal, const Vec3& p);
 bool at_goal(const Vec3& p, const Request& request);
 /// That distance, metres.
 double arrival_distance(const Request& request);
-
-/// The maximum of the vehicle's speed profile.
-double top_speed(const Vehicle& vehicle);
 }  // namespace altiplan::host

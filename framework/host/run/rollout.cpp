@@ -20,7 +20,7 @@ constexpr double kStepSeconds = 1;
 void expect_lawful(const PilotStep& step, const Observation& seen, const Request& request) {
   const double run = (step.next.position - seen.state.position).norm();
   const double dt = step.next.time_s - seen.state.time_s;
-  if (run > top_speed(request.vehicle) * dt * (1 + 1e-6) + kLengthTolerance) {
+  if (run > request.vehicle.max_speed() * dt * (1 + 1e-6) + kLengthTolerance) {
     throw PluginError(
         "the pilot violated the contract of its interface: a step faster than the vehicle",
         Reason::contract);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -61,6 +62,14 @@ struct ALTIPLAN_API Vehicle {
   double reach_m() const;
   /// Speed at a distance to the nearest obstacle (for example paper 002, eq. 6).
   double speed_at(double distance_m) const;
+  /// The greatest speed at any distance to obstacles.
+  double max_speed() const;
+  /// True if both are limited: its speed is then that over the ground, as of autopilots that hover.
+  bool has_rates() const { return std::isfinite(climb_mps) && std::isfinite(sink_mps); }
+  /// Metres of a straight way that count at its speed.
+  double counted_m(const Vec3& way) const {
+    return has_rates() ? way.head<2>().norm() : way.norm();
+  }
   /// Seconds that a change of height takes at least.
   double climb_time(double rise_m) const {
     return rise_m >= 0 ? rise_m / climb_mps : -rise_m / sink_mps;

@@ -17,8 +17,7 @@ void at_its_speeds(const World& world, const Vehicle& vehicle, const Vec3& a, co
                    const Use& use) {
   const double total = (b - a).norm();
   const double changes_height_s = vehicle.climb_time(b.z() - a.z());
-  const bool is_level_speed = std::isfinite(vehicle.climb_mps) && std::isfinite(vehicle.sink_mps);
-  const double level = is_level_speed && total > 0 ? (b - a).head<2>().norm() / total : 1;
+  const double level = total > 0 ? vehicle.counted_m(b - a) / total : 1;
   if (vehicle.speed_near.empty()) {
     use(0, total, std::max(level * total / vehicle.speed_mps, changes_height_s));
     return;

@@ -20,6 +20,14 @@ double Vehicle::reach_m() const {
   return body != nullptr ? std::max(radius_m, body->outer_m()) : radius_m;
 }
 
+double Vehicle::max_speed() const {
+  double fastest = speed_mps;
+  for (const SpeedNear& near : speed_near) {
+    fastest = std::max(fastest, near.speed_mps);
+  }
+  return fastest;
+}
+
 double Vehicle::speed_at(double distance_m) const {
   for (const SpeedNear& near : speed_near) {
     if (distance_m <= near.within_m) {

@@ -48,22 +48,12 @@ class FlightEnergy final : public Objective {
   /// The power depends on the density of the air, the time on obstacles and layers of wind.
   Traits do_traits() const override { return {.place = true, .heading = true}; }
 
-  static double fastest(const Vehicle& vehicle) {
-    double mps = vehicle.speed_mps;
-    for (const SpeedNear& near : vehicle.speed_near) {
-      mps = std::max(mps, near.speed_mps);
-    }
-    return mps;
-  }
-
   static double least_seconds(const Vec3& way, const Request& request) {
     const double climbs_s = request.vehicle.climb_time(way.z());
     const double wind = request.wind.max_speed();
     if (!request.vehicle.wing) {
-      const double fast = fastest(request.vehicle);
-      const Vehicle& vehicle = request.vehicle;
-      const bool has_rates = std::isfinite(vehicle.climb_mps) && std::isfinite(vehicle.sink_mps);
-      const double length = has_rates ? way.head<2>().norm() : way.norm();
+      const double fast = request.vehicle.max_speed();
+      const double length = request.vehicle.counted_m(way);
       return wind > (kAirspeeds - 1) * fast ? 0 : std::max(length / fast, climbs_s);
     }
     return std::max(way.head<2>().norm() / (request.air_speed() + wind), climbs_s);
@@ -75,7 +65,7 @@ class FlightEnergy final : public Objective {
     constexpr int kSteps = 64;
     const int fastest_air = vehicle.wing ? kSteps : int(kAirspeeds * kSteps);
     constexpr double kBetween = 0.98;
-    const double fast = fastest(vehicle);
+    const double fast = vehicle.max_speed();
     const double up = vehicle.wing ? fast * std::tan(vehicle.wing->climb) : vehicle.climb_mps;
     const double down = vehicle.wing ? fast * std::tan(vehicle.wing->sink) : vehicle.sink_mps;
     if (!std::isfinite(up) || !std::isfinite(down)) {

@@ -80,19 +80,16 @@ class FlightTime final : public Objective {
                  : std::max(way.head<2>().norm() / fastest, request.vehicle.climb_time(way.z()));
     }
     const Vehicle& vehicle = request.vehicle;
-    double fastest = vehicle.speed_mps;
-    for (const SpeedNear& near : vehicle.speed_near) {
-      fastest = std::max(fastest, near.speed_mps);
-    }
-    const bool has_rates = std::isfinite(vehicle.climb_mps) && std::isfinite(vehicle.sink_mps);
-    const double straight_s = (has_rates ? way.head<2>().norm() : way.norm()) / fastest;
+    const double fastest = vehicle.max_speed();
+    const double straight_s = vehicle.counted_m(way) / fastest;
     if (!params_.above_m) {
       return std::max(straight_s, vehicle.climb_time(way.z()));
     }
     const double down = std::max(0.0, from.z() - *params_.above_m);
     const double up = std::max(0.0, to.z() - *params_.above_m);
-    return std::min(straight_s, has_rates ? vehicle.climb_time(-down) + vehicle.climb_time(up)
-                                          : (down + up) / fastest);
+    return std::min(straight_s, vehicle.has_rates()
+                                    ? vehicle.climb_time(-down) + vehicle.climb_time(up)
+                                    : (down + up) / fastest);
   }
 
   std::string do_unit() const override { return "s"; }
