@@ -160,16 +160,11 @@ class LegJudge {
       return climb_angle(leg_);
     }
     double climb = climb_through_air(a_, b_);
-    Vec3 from = a_;
-    std::vector<double> ends = request_.wind.crossings(a_, b_);
-    ends.push_back(1);
-    for (const double end : ends) {
-      const Vec3 to = a_ + end * leg_;
+    in_each_wind([&](const Vec3& from, const Vec3& to) {
       if (std::abs(to.z() - from.z()) > kLengthTolerance) {  // a leg may end on a border
         climb = std::max(climb, climb_through_air(from, to));
       }
-      from = to;
-    }
+    });
     return climb;
   }
   double climb_through_air(const Vec3& from, const Vec3& to) const {
@@ -196,18 +191,26 @@ class LegJudge {
 
   /// Where on a leg that cannot be flown its course is not held.
   Vec3 beaten_at() const {
+    Vec3 place = (a_ + b_) / 2;
+    in_each_wind([&](const Vec3& from, const Vec3& to) {
+      if (!std::isfinite(flight_time(from, to, request_.air_speed(), request_.wind))) {
+        place = (from + to) / 2;
+      }
+    });
+    return place;
+  }
+
+  /// Calls `use(from, to)` for the parts of a straight leg between borders of the wind.
+  template <class Use>
+  void in_each_wind(const Use& use) const {
+    Vec3 from = a_;
     std::vector<double> ends = request_.wind.crossings(a_, b_);
     ends.push_back(1);
-    double begin = 0;
     for (const double end : ends) {
-      const Vec3 from = a_ + begin * (b_ - a_);
-      const Vec3 to = a_ + end * (b_ - a_);
-      if (!std::isfinite(flight_time(from, to, request_.air_speed(), request_.wind))) {
-        return (from + to) / 2;
-      }
-      begin = end;
+      const Vec3 to = a_ + end * leg_;
+      use(from, to);
+      from = to;
     }
-    return (a_ + b_) / 2;
   }
 
   bool keeps_size() const {
