@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -237,6 +238,17 @@ class Wing {
   double speed_mps[2];
 
  private:
+  friend HeldRates held_rates(formats::Autopilot, const ParameterFile&, double);
+
+  static constexpr double kGravity = 9.80665;
+  static constexpr double kBesideTrack = 3;  ///< metres that are kept within
+  static constexpr double kWeakTurn = 0.62;  ///< of the turn that is sought: it sinks instead
+  static constexpr double kWeakest = 0.72;   ///< of the turn that the greatest bank would give
+  static constexpr double kQuick = 1.15;     ///< rates of climb and sink, of those that are sought
+  static constexpr double kSlow = 0.85;
+  static constexpr double kSlowClimb = 0.75;  ///< of an aeroplane of ArduPilot's
+  static double bearing_of(const Eigen::Vector2d& v) { return std::atan2(v.y(), v.x()); }
+
   /// One of the ways to fly within the parameters.
   struct Member {
     Eigen::Vector2d at;
