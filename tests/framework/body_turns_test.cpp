@@ -131,7 +131,7 @@ void compare(const char* name, int worlds, std::uint64_t seed, const Drawn& draw
   }
 }
 
-TEST(BodyTurns, AtWaypointsMeetWhatTheOracleFinds) { compare("corner", 10, 1, drawn_corner); }
+TEST(BodyTurns, AtWaypointsMeetWhatTheOracleFinds) { compare("corner", 4, 1, drawn_corner); }
 TEST(NightlyBodyTurns, AtWaypointsMeetWhatTheOracleFinds) {
   compare("corner", 300, 3, drawn_corner);
 }

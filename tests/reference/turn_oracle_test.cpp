@@ -127,7 +127,7 @@ void hold_to_steps(int legs, std::uint64_t seed) {
   }
 }
 
-TEST(TurnOracle, TheJudgeMissesAndInventsNothing) { hold_to_steps(170, 1); }
+TEST(TurnOracle, TheJudgeMissesAndInventsNothing) { hold_to_steps(70, 1); }
 TEST(NightlyTurnOracle, TheJudgeMissesAndInventsNothing) { hold_to_steps(17'000, 2); }
 
 /// Turns that graze a solid at one point, from outside, from inside and along it.

@@ -88,10 +88,10 @@ Seen compare(std::uint64_t first, std::uint64_t last) {
 }
 
 TEST(Sipp, ArrivesAsEarlyAsAnExhaustiveSearchInSpaceAndTime) {
-  const Seen seen = compare(1, 101);
-  EXPECT_GT(seen.found, 80);
-  EXPECT_GT(seen.waits, 10);
-  EXPECT_GT(seen.later, 20);
+  const Seen seen = compare(1, 41);
+  EXPECT_GT(seen.found, 32);
+  EXPECT_GT(seen.waits, 4);
+  EXPECT_GT(seen.later, 8);
 }
 
 TEST(NightlySipp, ArrivesAsEarlyAsAnExhaustiveSearchInSpaceAndTime) {
