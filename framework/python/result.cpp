@@ -7,6 +7,7 @@
 
 #include "altiplan/error.hpp"
 #include "host/base/output_file.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/result/stored_result.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/view/scene.hpp"
@@ -123,6 +124,7 @@ T run(const RunCall& call,
     options.threads = call.threads;
     options.timeout_s = call.timeout_s;
     options.stop = stop;
+    options.judge_returns = host::judge_route_returns;
     if (call.out) {
       options.out = *call.out;
     }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "host/config/yaml.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/run/pipeline.hpp"
 #include "support/folders.hpp"
 
@@ -90,6 +91,7 @@ Ran run_file(const fs::path& pipeline, host::Overrides overrides, int threads) {
   const host::Config config = host::load_config(pipeline, overrides);
   host::RunOptions options;
   options.threads = threads;
+  options.judge_returns = host::judge_route_returns;
   const host::RunResult result = host::run(config, options);
   return {host::result_json(config, result), result.exit_code()};
 }

@@ -407,6 +407,8 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   judged.world = busy("building the world", [&] {
     return host::build_mission(scenario ? *scenario : world_of(plan, judged.mission, overrides), 1);
   });
+  plan.gate.flight.wind_mps =
+      std::max(plan.gate.flight.wind_mps, judged.world.request.wind.max_speed());
   host::take_battery(judged.world.request.vehicle, judged.mission, plan.gate);
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);

@@ -9,6 +9,7 @@
 #include "host/gate/certificate.hpp"
 #include "host/gate/glide.hpp"
 #include "host/gate/returns.hpp"
+#include "host/gate/returns_json.hpp"
 #include "host/result/result_json.hpp"
 #include "terminal.hpp"
 
@@ -42,83 +43,6 @@ void print_glide(const host::GlideReport& glide, const PlanReport& report,
   for (const host::GlideStretch& reached : glide.reached) {
     std::printf("  %s\n", host::printable(in_words(reached, report)).c_str());
   }
-}
-
-const char* key_of(host::Verdict verdict) {
-  return verdict == host::Verdict::not_judged ? "not_judged" : word_of(verdict);
-}
-
-Json refused_json(const std::vector<host::RefusedReturn>& stretches, const host::Mission& world) {
-  Json refused = Json::array();
-  for (const host::RefusedReturn& stretch : stretches) {
-    const Finding& finding = stretch.finding;
-    Json one{{"from_s", stretch.from_s},
-             {"to_s", stretch.to_s},
-             {"worst_s", stretch.worst_s},
-             {"item", finding.item},
-             {"items", finding.items},
-             {"part", finding.what},
-             {"rule", finding.violation.constraint},
-             {"value", finding.violation.value},
-             {"limit", finding.violation.limit},
-             {"unit", finding.violation.unit},
-             {"layer", finding.violation.layer},
-             {"zone", finding.zone},
-             {"message", finding.violation.message}};
-    if (finding.at) {
-      const auto [lon, lat] = world.truth.frame().to_lonlat(finding.at->x(), finding.at->y());
-      one["lonlat"] = {lon, lat};
-      one["altitude_m"] = finding.at->z();
-    }
-    refused.push_back(std::move(one));
-  }
-  return refused;
-}
-
-Json to_json(const std::vector<host::Parameters::Used>& used) {
-  Json parameters = Json::object();
-  for (const host::Parameters::Used& one : used) {
-    parameters[one.name] = one.value;
-  }
-  return parameters;
-}
-
-Json glide_json(const host::GlideReport& glide, const PlanReport& report,
-                const host::Mission& world) {
-  Json reached = Json::array();
-  for (const host::GlideStretch& stretch : glide.reached) {
-    reached.push_back({{"from_s", stretch.from_s},
-                       {"to_s", stretch.to_s},
-                       {"items", {report.name_of(stretch.first), report.name_of(stretch.last)}},
-                       {"site", stretch.site},
-                       {"margin_m", stretch.margin_m}});
-  }
-  return Json{{"verdict", key_of(glide.verdict)},
-              {"ratio", glide.ratio},
-              {"wind_mps", glide.wind_mps},
-              {"margin_m", glide.margin_m() ? Json(*glide.margin_m()) : Json()},
-              {"reached", reached},
-              {"refused", refused_json(glide.refused, world)},
-              {"not_judged", glide.unjudged},
-              {"parameters", to_json(glide.parameters)}};
-}
-
-Json returns_json(const PlanReport& report, const host::Mission& world) {
-  const host::ReturnsReport& returns = *report.returns;
-  const host::RefusedReturn* worst = returns.worst();
-  Json json{
-      {"verdict", key_of(returns.overall())},
-      {"worst",
-       worst == nullptr ? Json() : Json{{"time_s", worst->worst_s}, {"item", worst->finding.item}}},
-      {"point_of_no_return_s",
-       returns.point_of_no_return_s ? Json(*returns.point_of_no_return_s) : Json()},
-      {"refused", refused_json(returns.refused, world)},
-      {"not_judged", returns.unjudged},
-      {"parameters", to_json(returns.parameters)}};
-  if (returns.glide) {
-    json["glide"] = glide_json(*returns.glide, report, world);
-  }
-  return json;
 }
 
 /// [fastest, slowest]; null where nothing ends it.
@@ -225,8 +149,8 @@ Json plan_json(const PlanReport& report, const host::Mission& world) {
   for (const formats::Autopilot& autopilot : report.autopilots) {
     autopilots.push_back(autopilot.name());
   }
-  Json json{{"plan", report.file},         {"verdict", key_of(report.verdict())},
-            {"autopilots", autopilots},    {"parameters", to_json(report.parameters)},
+  Json json{{"plan", report.file},         {"verdict", host::key_of(report.verdict())},
+            {"autopilots", autopilots},    {"parameters", host::to_json(report.parameters)},
             {"violations", all},           {"time_s", to_json(report.time)},
             {"parts", parts_json(report)}, {"metrics", host::to_json(report.measures)},
             {"notes", report.notes}};
@@ -239,7 +163,7 @@ Json plan_json(const PlanReport& report, const host::Mission& world) {
                       {"circles_at_home", energy->circles_at_home}};
   }
   if (report.returns) {
-    json["returns"] = returns_json(report, world);
+    json["returns"] = host::returns_json(report, world);
   }
   return json;
 }

@@ -8,7 +8,7 @@
 
 #include "host/autopilot/parameters.hpp"
 #include "host/flight/events.hpp"
-#include "host/gate/fewest_items.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/import_export/plan.hpp"
 #include "progress.hpp"
 
@@ -160,28 +160,21 @@ std::optional<host::Exported> exported(const RouteExport& route,
 
 std::optional<host::Plan> fewest_plan(const LoadedRoute& loaded, const RouteExport& route,
                                       const PlanCheck& options) {
-  host::ExportOptions all = route.options;
-  all.max_items.reset();
-  // It would fly home where its mission ends.
-  all.circles_at_end = loaded.mission.vehicle_type == host::VehicleType::plane;
-  const host::Exported written = busy("judging the mission", [&] {
-    return host::export_route(loaded.mission, loaded.source, all);
-  });
-  if (!written.text) {
-    say(written.messages);
-    return std::nullopt;
-  }
   host::GateOptions gate = options.gate;
-  all.firmware = gate.firmware.value_or(all.firmware);
   if (options.parameters) {
     gate.flight.parameters = host::read_parameters(*options.parameters);
   }
-  const host::FewestItems fewest = busy("searching the fewest items", [&] {
-    return host::fewest_items(loaded.mission, loaded.source, all, written.mission, gate);
+  const host::RouteMission made = busy("searching the fewest items", [&] {
+    return host::mission_of_route(loaded.mission, loaded.source, route.options, gate);
   });
+  if (!made.fewest) {
+    say(made.written.messages);
+    return std::nullopt;
+  }
+  const host::FewestItems& fewest = *made.fewest;
   const std::size_t items = fewest.plan.items.size();
   const std::string how = std::to_string(items) + " items in place of " +
-                          std::to_string(host::plan_of(written.mission).items.size());
+                          std::to_string(host::plan_of(made.written.mission).items.size());
   if (!fewest.passed()) {
     tell_findings(route.result + ", " + how + ", flown as a plan", {{}, {}, fewest.report, {}});
     return std::nullopt;

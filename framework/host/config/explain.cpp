@@ -105,7 +105,7 @@ void add_step(std::vector<Explained>& all, const Config& config, const StepEntry
       add_fields(all, {{field}, {}}, step.path);
     }
   }
-  if (step.plugin != kFollowRoute) {
+  if (step.plugin != kFollowRoute && step.verb != Verb::returns) {
     add_plugin(all, config, kind_of_step(*config.registry, step), step.plugin, step.with,
                step.path + ".with");
   }

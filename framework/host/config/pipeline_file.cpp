@@ -4,7 +4,8 @@
 namespace altiplan::host {
 
 const char* name(Verb verb) {
-  return verb == Verb::plan ? "plan" : verb == Verb::smooth ? "smooth" : "fly";
+  constexpr const char* kNames[] = {"plan", "smooth", "returns", "fly"};
+  return kNames[int(verb)];
 }
 
 void SmootherEntry::describe(Fields& f) {
@@ -34,36 +35,46 @@ void StepEntry::describe(Fields& f) {
   std::optional<std::string> plan;
   std::optional<std::string> pilot;
   std::optional<Value> smooth;
+  std::optional<std::string> autopilot;
   f("plan", plan).doc("a planner, or a local planner that the host rolls out");
   f("fly", pilot).doc("a local planner, or route: follow the route without one");
+  f("returns", autopilot)
+      .one_of({"ardupilot", "px4"})
+      .doc("an autopilot: judges the returns of the route as it flies the mission");
   const bool flies = pilot.has_value();
+  const bool judges = autopilot.has_value();
   if (!flies) {
     f("smooth", smooth).doc("a smoother");
   }
-  f("id", id).doc("name of the step; default: the plugin's name");
-  f("with", with).doc("the plugin's parameters");
-  f("from", from).doc("id of the step whose route is the input; default: the last accepted");
-  f("within_s", within_s).unit("s").greater_than(0).at_most(1e8).doc("time budget");
-  f("within_iterations", within_iterations).at_least(0).doc("budget in units of `expanded`");
-  f("within_mb", within_mb).unit("MiB").greater_than(0).at_most(1e9).doc("memory budget");
-  f("else", alternatives).doc("steps tried in order if this one is not accepted");
+  f("id", id).doc("name of the step; default: the plugin's name, or returns");
+  if (judges || !f.reading()) {
+    f("params", params).doc("the autopilot's parameters (.param, .params); default: its own");
+  }
+  if (!judges) {
+    f("with", with).doc("the plugin's parameters");
+    f("from", from).doc("id of the step whose route is the input; default: the last accepted");
+    f("within_s", within_s).unit("s").greater_than(0).at_most(1e8).doc("time budget");
+    f("within_iterations", within_iterations).at_least(0).doc("budget in units of `expanded`");
+    f("within_mb", within_mb).unit("MiB").greater_than(0).at_most(1e9).doc("memory budget");
+    f("else", alternatives).doc("steps tried in order if this one is not accepted");
+  }
   if (flies || !f.reading()) {
     fly.describe(f);
   }
   const bool smooths = smooth && smooth->kind == Value::Kind::scalar;
-  f.check(int(plan.has_value()) + int(flies) + int(smooth.has_value()) == 1,
-          "expected one verb: plan, smooth or fly");
+  f.check(int(plan.has_value()) + int(flies) + int(smooth.has_value()) + int(judges) == 1,
+          "expected one verb: plan, smooth, returns or fly");
   f.check(!smooth || (smooths && !smooth->text.empty()),
           "expected the name of a smoother after smooth");
   f.check(!plan || !plan->empty(), "expected the name of a planner after plan, found none");
   f.check(!pilot || !pilot->empty(),
           "expected the name of a local planner, or route, after fly, found none");
   f.check(!plan || !from, "a plan step takes no route: from is for smooth and fly");
-  verb = plan ? Verb::plan : flies ? Verb::fly : Verb::smooth;
-  plugin = plan ? *plan : flies ? *pilot : smooths ? smooth->text : "";
+  verb = plan ? Verb::plan : flies ? Verb::fly : judges ? Verb::returns : Verb::smooth;
+  plugin = plan ? *plan : flies ? *pilot : judges ? *autopilot : smooths ? smooth->text : "";
   path = f.path();
   if (id.empty()) {
-    id = plugin;
+    id = judges ? name(verb) : plugin;
   }
 }
 

@@ -34,13 +34,14 @@ inline Value empty_map() {
   return map;
 }
 
-enum class Verb { plan, smooth, fly };
+enum class Verb { plan, smooth, returns, fly };
 const char* name(Verb verb);
 
 /// `fly: route` has no pilot: the vehicle just follows the route.
 inline constexpr const char* kFollowRoute = "route";
 
-/// A step: one verb and a plugin's name, the plugin's parameters, and the host's keys.
+/// A step: one verb and a plugin's name (of `returns` an autopilot's), the plugin's parameters, and
+/// the host's keys.
 struct StepEntry {
   Verb verb = Verb::plan;
   std::string plugin;
@@ -53,6 +54,7 @@ struct StepEntry {
   std::vector<Value> alternatives;   ///< `else`: step maps, bound by the configuration
   std::vector<StepEntry> otherwise;  ///< `alternatives`, bound
   FlyKeys fly;
+  std::optional<Path> params;  ///< of `returns`
   Location where;
   std::string path;  ///< "steps.0.else.1"
   void describe(Fields& f);

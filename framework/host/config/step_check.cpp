@@ -94,7 +94,11 @@ void check_plugins(Checker& checker, const Config& config, const StepEntry& step
   if (step.plugin.empty()) {
     return;  // already reported
   }
-  if (step.verb == Verb::fly && step.plugin == kFollowRoute) {
+  if (step.verb == Verb::returns) {
+    if (step.params) {
+      checker.check_file(step.params->text, place_of(tree, "params"), step.path + ".params");
+    }
+  } else if (step.verb == Verb::fly && step.plugin == kFollowRoute) {
     if (!step.with.entries.empty()) {
       checker.problem(place_of(tree, "with"), step.path + ".with",
                       "fly: route takes no parameters");
@@ -130,11 +134,17 @@ class StepCheck {
       checker_.problem(tree.where, step.path, "a fly step must be the last");
     }
     unknown_ = unknown_ || step.plugin.empty();
+    const bool judges = step.verb == Verb::returns;
     if (step.verb != Verb::plan && plans_.empty() && !unknown_) {
       checker_.problem(tree.where, step.path,
-                       std::string("there is no route to ") + name(step.verb) +
+                       std::string("there is no route to ") + (judges ? "judge" : name(step.verb)) +
                            " yet: expected an earlier plan step");
     }
+    if (judged_ && (step.verb == Verb::plan || step.verb == Verb::smooth)) {
+      checker_.problem(tree.where, step.path,
+                       "a returns step judges the last route: expected it behind this one");
+    }
+    judged_ = judged_ || judges;
     flown_ = flown_ || step.verb == Verb::fly;
     check_one(step, tree);
     for (std::size_t k = 0; k < step.otherwise.size(); ++k) {
@@ -173,6 +183,7 @@ class StepCheck {
   Ids ids_;
   std::set<std::string> earlier_;
   std::set<std::string> plans_;
+  bool judged_ = false;
   bool flown_ = false;
   bool unknown_ = false;  ///< a step without a verb may have been meant as a plan step
 };
@@ -185,6 +196,7 @@ const char* kind_of_step(Registry& registry, const StepEntry& step) {
     case Verb::fly:
       return "local_planner";
     case Verb::plan:
+    case Verb::returns:  // it names none
       break;
   }
   return registry.offering("planner", step.plugin) == nullptr &&

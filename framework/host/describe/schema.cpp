@@ -242,12 +242,21 @@ Json step_schema(Writer& writer) {
   Json not_flying = only_flying;
   not_flying["smooth"] = {{"enum", names_of(writer.named("smoother"))},
                           {"description", "a smoother"}};
-  all_of.push_back({{"if", {{"required", Json::array({"fly"})}}},
-                    {"then", {{"properties", {{"smooth", smoothers}, {"plan", false}}}}},
-                    {"else",
-                     {{"properties", std::move(not_flying)},
-                      {"oneOf", Json::array({{{"required", Json::array({"plan"})}},
-                                             {{"required", Json::array({"smooth"})}}})}}}});
+  all_of.push_back(
+      {{"if", {{"required", Json::array({"fly"})}}},
+       {"then", {{"properties", {{"smooth", smoothers}, {"plan", false}, {"returns", false}}}}},
+       {"else",
+        {{"properties", std::move(not_flying)},
+         {"oneOf", Json::array({{{"required", Json::array({"plan"})}},
+                                {{"required", Json::array({"smooth"})}},
+                                {{"required", Json::array({"returns"})}}})}}}});
+  Json not_judging = Json::object();
+  for (const char* key : {"with", "from", "within_s", "within_iterations", "within_mb", "else"}) {
+    not_judging[key] = false;
+  }
+  all_of.push_back({{"if", {{"required", Json::array({"returns"})}}},
+                    {"then", {{"properties", std::move(not_judging)}}},
+                    {"else", {{"properties", {{"params", false}}}}}});
   all_of.push_back({{"if", {{"required", Json::array({"plan"})}}},
                     {"then", {{"properties", {{"from", false}}}}}});
   return {{"type", "object"},

@@ -6,6 +6,7 @@
 #include "host/edit/page_request.hpp"
 #include "host/edit/plan_task.hpp"
 #include "host/flight/events.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/result/stored_result.hpp"
 #include "host/run/pipeline.hpp"
 #include "host/view/scene_parts.hpp"
@@ -31,12 +32,13 @@ bool is_anytime(const Config& config, const std::string& name) {
   return false;
 }
 
-/// Limits plan steps that may take longer to a time in which one can wait for them, and leaves the
-/// flight out unless it `flies`.
+/// Limits plan steps that may take longer to a time in which one can wait for them, and leaves out
+/// the judging of returns, and the flight unless it `flies`.
 void make_quick(Config& config, bool flies) {
   if (!flies && config.steps.back().verb == Verb::fly) {
     config.steps.pop_back();
   }
+  std::erase_if(config.steps, [](const StepEntry& step) { return step.verb == Verb::returns; });
   for (StepEntry& step : config.steps) {
     if (step.verb == Verb::plan) {
       const double max_seconds = is_anytime(config, step.plugin) ? kQuickSeconds : kLongestSeconds;
@@ -62,6 +64,7 @@ Planned planned(const EditedPipeline& pipeline, const std::vector<std::string>& 
     make_quick(config, flies);
   }
   RunOptions options;
+  options.judge_returns = judge_route_returns;
   options.on_stuck = [&](const RunResult& result) { on_stuck(error_answer(result.message)); };
   Mission mission;
   options.on_mission = [&](const Mission& built) { mission = built; };

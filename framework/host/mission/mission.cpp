@@ -12,6 +12,7 @@
 #include "altiplan/field.hpp"
 #include "altiplan/formats/earth_polygon.hpp"
 #include "altiplan/formats/iso_time.hpp"
+#include "host/autopilot/parameters.hpp"
 #include "host/base/shapes.hpp"
 #include "host/config/config_check.hpp"
 #include "host/mission/coverage.hpp"
@@ -456,6 +457,29 @@ TaskOrder order_of_task(const Mission& mission, Budget budget) {
   return mission.task->order(request, mission.ends);
 }
 
+namespace {
+/// What judging the returns of a route takes: places on the Earth, and ground.
+void expect_returns(const Config& config, const World& world) {
+  for (const StepEntry& step : config.steps) {
+    if (step.verb != Verb::returns) {
+      continue;
+    }
+    if (!world.frame().has_position() || !world.has_ground()) {
+      throw ConfigError(step.where, step.path + ".returns",
+                        std::string("returns are flown over known ground: the scenario's world ") +
+                            (world.has_ground() ? "is not georeferenced" : "has no terrain"));
+    }
+    if (step.params) {
+      try {
+        static_cast<void>(read_parameters(step.params->text));
+      } catch (const Error& error) {
+        throw ConfigError(step.where, step.path + ".params", error.what());
+      }
+    }
+  }
+}
+}  // namespace
+
 Mission build_mission(const Config& config, int threads, const Calling& given,
                       const NoteSink& noted) {
   const auto ignore = [](const std::string&) {};
@@ -482,6 +506,7 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
                       "only an elevation model (terrain) can be warped to a coordinate system, "
                       "and the world has none: give origin_lonlat, a point near the flight");
   }
+  expect_returns(config, truth);
   const std::optional<double>& level = file.level_flight_at_m;
   site.frame = truth.frame();
   site.before = &truth;

@@ -298,6 +298,9 @@ Json to_json(const StepResult& step) {
   json["metrics"] = step.measures ? to_json(*step.measures, step.metrics) : Json(nullptr);
   json["check"] = step.check ? to_json(*step.check) : Json(nullptr);
   json.update(to_json(step.cost));
+  if (step.verb == Verb::returns) {
+    json["returns"] = step.returns.empty() ? Json(nullptr) : parse_json(step.returns);
+  }
   return json;
 }
 

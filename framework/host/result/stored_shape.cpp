@@ -62,6 +62,7 @@ constexpr Key kStep[] = {
     {"check", kObject | kNull},
     {"cost", kNumber | kNull},
     {"bound", kNumber | kNull},
+    {"returns", kObject | kNull},
 };
 constexpr Key kFlight[] = {
     {"status", kStatus},

@@ -40,6 +40,7 @@ RunResult Run::operator()() {
   if (options_.on_mission) {
     options_.on_mission(mission_);
   }
+  unordered_ = mission_;
   result_.frame = mission_.truth.frame();
   result_.objective = mission_.request.objective;
   result_.vehicle = mission_.request.vehicle;
@@ -67,6 +68,8 @@ RunResult Run::operator()() {
     }
     if (step.verb == Verb::fly) {
       fly_step(step);
+    } else if (step.verb == Verb::returns) {
+      returns_step(step);
     } else {
       attempt(step);
     }
@@ -129,6 +132,15 @@ void Run::conclude() {
   result_.reason = result_.flight ? result_.flight->reason : Reason::none;
   result_.message = "route accepted (from '" + accepted + "')" +
                     (result_.flight ? "; the flight: " + result_.flight->message : "");
+  for (const StepResult& step : result_.steps) {
+    if (step.verb == Verb::returns && !step.accepted) {
+      result_.message += "; " + step.id + ": " + step.message;
+      if (result_.status == RunStatus::solved) {
+        result_.status = step.status;
+        result_.reason = step.reason;
+      }
+    }
+  }
 }
 
 int RunResult::exit_code() const {

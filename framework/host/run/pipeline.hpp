@@ -30,6 +30,13 @@ struct RunProgress {
   void begin_step();
 };
 
+/// Of the returns of a route, as `check --returns` judges them.
+struct ReturnsVerdict {
+  bool passes = false;
+  std::string message;
+  std::string json;  ///< "": no mission is made of the route, which has no returns
+};
+
 struct RunOptions {
   int threads = 1;
   std::optional<std::filesystem::path> out;  ///< the file that the result is written to
@@ -48,6 +55,10 @@ struct RunOptions {
   RunProgress* progress = nullptr;  ///< null where nobody watches
   /// Called with the mission once it is built, for who shows its world afterwards.
   std::function<void(const Mission&)> on_mission;
+  /// Judges, for a step `returns`, the route that the result so far accepts, in the mission before
+  /// a task's passes are ordered (host/gate/route_returns.hpp).
+  std::function<ReturnsVerdict(const Config&, const Mission&, const RunResult&, const StepEntry&)>
+      judge_returns;
   /// If set, no step is done but the first attempt of the flight, without a time budget.
   std::optional<RealFlight> real;
 };

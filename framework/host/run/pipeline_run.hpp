@@ -101,6 +101,8 @@ class Run {
   /// Judges and measures; layers and constraints that throw fail the step.
   void judge_step(StepResult& step, const Request& request);
   static void take_verdict(StepResult& step);
+  /// Judges the returns of the accepted route.
+  void returns_step(const StepEntry& entry);
 
   template <class Interface>
   std::unique_ptr<Interface> make(const StepEntry& entry,
@@ -153,6 +155,7 @@ class Run {
   RunProgress own_progress_;
   RunProgress& progress_;  ///< the caller's, or its own
   Mission mission_;
+  Mission unordered_;                 ///< before its task is ordered
   std::optional<TaskSections> task_;  ///< once it is ordered
   bool ends_explained_ = false;
   std::mutex mutex_;  ///< guards result_ and caller_ against the watchdog

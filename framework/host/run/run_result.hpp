@@ -34,6 +34,7 @@ struct StepResult {
   MetricValues metrics;  ///< of a route that is measured
   std::optional<CheckResult> check;
   std::optional<Cost> cost;  ///< of a route that is judged
+  std::string returns;       ///< the verdict on them in JSON; "" where none are judged
 };
 
 /// A scenario's task as ordered.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host/base/machine_fault.hpp"
 #include "host/judge/judge.hpp"
 
 namespace altiplan::host {
@@ -49,6 +50,34 @@ void Run::judge_step(StepResult& step, const Request& request) {
     step.reason = Reason::process_changed;
     step.message = "judging the route, a layer or constraint " + changed;
   }
+}
+
+void Run::returns_step(const StepEntry& entry) {
+  StepResult step = begin_attempt(entry, std::nullopt);
+  const auto began = Clock::now();
+  enter("judging the returns (" + entry.path + ") by layers and constraints");
+  try {
+    ReturnsVerdict verdict = options_.judge_returns(config_, unordered_, result_, entry);
+    step.accepted = verdict.passes;
+    step.status = verdict.passes ? RunStatus::solved : RunStatus::rejected;
+    step.reason = verdict.passes ? Reason::none : Reason::constraint;
+    step.message = std::move(verdict.message);
+    step.returns = std::move(verdict.json);
+  } catch (const MachineFault&) {
+    throw;  // not a failure of the step
+  } catch (const std::exception& error) {
+    step.reason = reason_of(error);
+    step.message = std::string("judging the returns threw: ") + error.what();
+  }
+  if (const std::string changed = leave(); !changed.empty()) {
+    step.accepted = false;
+    step.status = RunStatus::failed;
+    step.reason = Reason::process_changed;
+    step.message = "judging the returns, a layer or constraint " + changed;
+  }
+  step.time_s = seconds_since(began);
+  const std::lock_guard lock(mutex_);
+  result_.steps.back() = std::move(step);
 }
 
 void Run::take_verdict(StepResult& step) {

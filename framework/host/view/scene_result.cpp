@@ -93,15 +93,31 @@ Json step_scene(const Json& step, const StoredResult& stored, const std::optiona
   return json;
 }
 
-/// The status of the run: that of its route or, if the route is valid, of its flight.
+/// The first step that judged returns and found them not to pass; null: there is none.
+const Json* unsafe_step(const StoredResult& stored) {
+  for (const Json& step : stored.json.at("steps")) {
+    if (step.at("verb") == name(Verb::returns) && !step.at("accepted").get<bool>()) {
+      return &step;
+    }
+  }
+  return nullptr;
+}
+
+/// The status of the run: that of its route or, if the route is valid, of its flight and of its
+/// returns, which are not judged again.
 void conclude(Json& json, const StoredResult& stored, const std::optional<Judged>& accepted,
               SceneNotes& notes) {
   const Json& flight = json.at("flight");
+  const Json* unsafe = accepted && accepted->check.ok() ? unsafe_step(stored) : nullptr;
   if (!accepted) {
     json["judged"] = nullptr;
     if (json.at("status") == name(RunStatus::solved)) {
       set_status(json, stored.file, name(RunStatus::no_route), "it contains no route");
     }
+  } else if (unsafe != nullptr &&
+             (flight.is_null() || flight.at("status") == name(RunStatus::solved))) {
+    set_status(json, stored.file, unsafe->at("status").get<std::string>(),
+               unsafe->at("message").get<std::string>());
   } else if (!accepted->check.ok() || flight.is_null()) {
     set_status(json, stored.file, status_of(accepted->check), first_found(accepted->check));
   } else {

@@ -16,6 +16,7 @@
 #include "altiplan/error.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/output_file.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/result/result_json.hpp"
 #include "host/run/pipeline.hpp"
 #include "study/workers/job_record.hpp"
@@ -154,6 +155,7 @@ RunOutcome run_pipeline(const Job& job, const host::Config& config, const StudyB
   }
   std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;
+  options.judge_returns = host::judge_route_returns;
   options.on_call = [&](const host::RunResult& result) {
     job.note(without_cause(result.message));
     process->set_crash_report(crash_report(job, config, result));

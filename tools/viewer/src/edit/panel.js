@@ -151,6 +151,9 @@ function pipeline_form({name, tree}, nth, editor, plugins) {
   return element('section', {className: 'result'}, element('b', {}, name),
     tree.steps.map((step, at) => {
       const verb = Object.keys(kVerbs).find((one) => one in step);
+      if (!verb) {  // judges returns of an autopilot, which is no plugin
+        return element('div', {className: 'step'}, element('span', {}, 'returns'), step.returns);
+      }
       const kinds = kVerbs[verb];
       const names = plugins.filter(({kind}) => kinds.includes(kind)).map((one) => one.name);
       const all = [...new Set([step[verb], ...names, ...verb === 'fly' ? ['route'] : []])];
