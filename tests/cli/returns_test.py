@@ -396,12 +396,46 @@ class Returns(PlanCase):
                 (COPTER, self.beyond() + [(21, 1900, 300, 0)] + self.AT_HOME[:2] + [(177, 6, 1)] + self.AT_HOME[2:],
                  self.AUTO_RTL, "jumps"),
                 (PX4_COPTER, self.beyond(), {"RTL_TYPE": 2, "RTL_RETURN_ALT": 250}, "RTL_TYPE"),
+                (PX4_COPTER, self.beyond() + self.LANDING, {"RTL_TYPE": 4, "RTL_RETURN_ALT": 250}, "RTL_TYPE 4"),
+                (PX4_COPTER, self.beyond() + self.LANDING, {"RTL_TYPE": 5, "RTL_RETURN_ALT": 250}, "RTL_TYPE 5"),
+                (PX4_COPTER, self.beyond() + [(189, 0)] + self.LANDING, {"RTL_TYPE": 3}, "more than one item"),
+                (PX4_COPTER, self.beyond()[:2] + [(178, 3)] + self.beyond()[2:] + self.LANDING, {"RTL_TYPE": 2}, "speed"),
+                (PX4_COPTER, self.beyond()[:2] + [(177, 2, 1)] + self.beyond()[2:] + self.LANDING, {"RTL_TYPE": 2}, "jump"),
+                (PX4_PLANE, [(22, 300, 0, 260)] + self.beyond(False) + [(21, 1900, 1200, 0)], {"RTL_TYPE": 4}, "RTL_TYPE 4"),
                 (PX4_PLANE, [(22, 300, 0, 260)] + self.beyond(False) + [(21, 1900, 1200, 0)], {}, "landing"),
                 (PLANE, self.beyond(False) + [(189, 0, 0, 0), (21, 1900, 300, 0)], {"RTL_AUTOLAND": 2}, "landing"),
                 ((3, 20), [(84, 0, 0, 260)] + self.beyond(False) + [(85, 2900, 0, 0)], {}, "VTOL")]:
             told = self.returns(vehicle, way, parameters=parameters, code=1)
             self.assertEqual(told["returns"]["verdict"], "not_judged", (words, told["returns"]))
             self.assertIn(words, str(told["returns"]["not_judged"]), told["violations"])
+
+    LANDING = [(21, 1900, 0, 0)]
+
+    def test_the_types_of_px4s_returns(self):
+        """To home, safe points and the mission's landing, whichever is nearer; 2 along the mission."""
+        low, high = {}, {"RTL_RETURN_ALT": 260}
+        home_side, beyond = [(100, 100, 0)], [(1900, 100, 0)]
+        for type_of, way, parameters, rally, verdict in [
+                (0, self.LANDING, low, (), "fail"), (3, self.LANDING, low, (), "pass"), (3, [], low, (), "fail"),
+                (3, [], high, (), "pass"), (3, [], low, beyond, "pass"), (2, self.LANDING, low, (), "pass"),
+                # At the landing alone, which from home lies behind the ridge.
+                (1, self.LANDING, low, (), "fail"), (1, self.LANDING, high, (), "pass"), (1, [], low, (), "fail"),
+                (1, self.LANDING, low, home_side, "pass"), (1, [], low, beyond, "fail"),
+                # At a safe point alone; some versions know no such type.
+                (5, self.LANDING, low, beyond, "fail"), (5, self.LANDING, high, beyond, "pass")]:
+            told = self.returns(PX4_COPTER, self.beyond() + way, parameters={"RTL_TYPE": type_of, **parameters},
+                                rally=rally, code=0 if verdict == "pass" else 1)
+            self.assertEqual(told["verdict"], "pass", told["violations"])
+            self.assertEqual(told["returns"]["verdict"], verdict, (type_of, way, parameters, rally, told["returns"]))
+
+    def test_the_nearest_item_beyond_a_ridge(self):
+        """PX4 holds before it returns along a mission, and then flies to the nearest item, the ridge or not."""
+        way = [(22, 0, 0, 60), (16, 700, -900, 60), (16, 700, 900, 60), (16, 700, 900, 260), (16, 1100, 900, 260),
+               (16, 1100, 0, 60), (21, 1100, -200, 0)]
+        told = self.returns(PX4_COPTER, way, parameters={"RTL_TYPE": 2}, code=1)
+        self.assertEqual(told["verdict"], "pass", told["violations"])
+        self.assertEqual({one["item"] for one in told["returns"]["refused"]}, {3}, told["returns"]["refused"])
+        self.assertEqual({one["part"] for one in told["returns"]["refused"]}, {"the way back to the mission"})
 
     def test_a_mission_that_is_refused_has_no_returns(self):
         told = self.returns(PX4_COPTER, [(22, 0, 0, 50), (82, 300, 0, 50)], code=1)
@@ -556,7 +590,8 @@ class Referee(PlanCase):
     PLACES = [("N44W072.hgt", 44.26, -71.33, 0.05), ("srtmgl3_boulder_co.asc", 40.15, -105.5, 0.045)]
     KINDS = [(COPTER, {"RTL_ALT_M": 60}), (COPTER, {"RTL_ALT_M": 300}), (PLANE, {"RTL_ALTITUDE": 150}),
              (PLANE, {"RTL_ALTITUDE": 500}), (PX4_COPTER, {"RTL_RETURN_ALT": 90}),
-             (PX4_PLANE, {"RTL_TYPE": 0, "RTL_RETURN_ALT": 200})]
+             (PX4_PLANE, {"RTL_TYPE": 0, "RTL_RETURN_ALT": 200}), (PX4_COPTER, {"RTL_TYPE": 2, "RTL_RETURN_ALT": 30}),
+             (PX4_COPTER, {"RTL_TYPE": 3, "RTL_RETURN_ALT": 60})]
 
     @unittest.skipUnless(MODELS.is_dir(), "no test data: set ALTIPLAN_TEST_DATA")
     def test_no_return_is_passed_that_hits_the_ground(self):
@@ -564,7 +599,7 @@ class Referee(PlanCase):
         for number, (name, *place) in enumerate(self.PLACES):
             model = Model(name)
             for kind, (vehicle, parameters) in enumerate(3 * self.KINDS):
-                if not NIGHTLY and (kind > 5 or kind % 2 != number):  # by day each kind once
+                if not NIGHTLY and (kind > 7 or kind % 2 != number):  # by day each kind once
                     continue
                 self.judge(model, place, vehicle, parameters, random.Random(f"{name} {kind}"), counts)
         enough = 300 if NIGHTLY else 100
@@ -604,6 +639,9 @@ class Referee(PlanCase):
             items.insert(0, item(1, 22, home[0] + 0.005, home[1], 120))
             lat, lon, z = way[-1]
             items.append(item(9, 21, lat + (z - model.ground(lat, lon)) / math.tan(math.radians(4)) / METRES, lon, 0))
+        type_of = parameters.get("RTL_TYPE", 0)
+        if type_of in (2, 3):
+            items.append(item(9, 21, way[-1][0] + 0.001, way[-1][1], 0))
         self.write(items, firmwareType=vehicle[0], vehicleType=vehicle[1], plannedHomePosition=home)
         (self.folder / "p.param").write_text("".join(f"{name},{value}\n" for name, value in parameters.items()))
         arguments = ["mission.plan", "--terrain", model.file, *model.crs, "--params", "p.param", "--returns", "--json"]
@@ -625,7 +663,13 @@ class Referee(PlanCase):
                     at[2] = max(at[2], b[2]) if b[2] < a[2] else at[2]
                 second = begin + share * (end - begin)
                 is_refused = any(one["from_s"] - 5 <= second <= one["to_s"] + 5 for one in told["returns"]["refused"])
-                hits = self.hits(model, at, home, vehicle, home[2] + above, east)
+                if type_of == 2:
+                    hits = any(self.is_in_ground(model, at, to, east) for to in self.joined(at, way, b, home, east))
+                elif type_of == 3:
+                    hits = self.hits(model, at, self.nearer(at, home, [way[-1][0] + 0.001, way[-1][1], home[2]], east),
+                                     vehicle, home[2] + above, east)
+                else:
+                    hits = self.hits(model, at, home, vehicle, home[2] + above, east)
                 counts["seconds"] += 1
                 counts["refused"] += is_refused
                 counts["hits"] += hits
@@ -636,6 +680,27 @@ class Referee(PlanCase):
                              timeout=600)
         self.assertIn(run.returncode, (0, 1), run.stderr)
         return json.loads(run.stdout)
+
+    @staticmethod
+    def joined(at, way, end, home, east):
+        """The next item, and the nearest one where no other is almost as near: none flies to the others."""
+        items = [[*home[:2], home[2] + 120], *way, [way[-1][0] + 0.001, way[-1][1], home[2]]]
+        metres = sorted((math.dist((one[0] * METRES, one[1] * east, one[2]), (at[0] * METRES, at[1] * east, at[2])), n)
+                        for n, one in enumerate(items))
+        return [end] + ([items[metres[0][1]]] if metres[1][0] > 1.05 * metres[0][0] + 20 else [])
+
+    @staticmethod
+    def is_in_ground(model, at, to, east):
+        length = math.dist((at[0] * METRES, at[1] * east), (to[0] * METRES, to[1] * east))
+        return any(at[2] + s * (to[2] - at[2]) < model.ground(at[0] + s * (to[0] - at[0]), at[1] + s * (to[1] - at[1])) - 2
+                   for s in (n * 10 / length for n in range(1, int(length / 10) - 1)))
+
+    @staticmethod
+    def nearer(at, one, other, east):
+        """Of two places; the first where they hardly differ, for both are judged there."""
+        def far(place):
+            return math.dist((at[0] * METRES, at[1] * east), (place[0] * METRES, place[1] * east))
+        return other if far(other) < far(one) else one
 
     def hits(self, model, at, home, vehicle, target, east):
         north, west = (home[0] - at[0]) * METRES, (home[1] - at[1]) * east

@@ -65,7 +65,9 @@ FlownMission Walker::return_from(std::size_t n, const Whereabouts& place) {
         hover_.emplace(flight_, place.at, place.low_m);
         hover_->high = place.high_m;
       }
-      if (failsafe == Failsafe::returns || !join_mission(n, failsafe, place)) {
+      const bool joins =
+          failsafe == Failsafe::returns ? fly_on(n, place) : join_mission(n, failsafe, place);
+      if (!joins) {
         return_home(n);
       }
       end = {std::min(end.min_s, mission_.time.min_s), std::max(end.max_s, mission_.time.max_s)};

@@ -139,9 +139,13 @@ void Hover::return_from(std::size_t command, const Whereabouts& place, double lo
 }
 
 void Hover::join(std::size_t command, const Whereabouts& place, const Destination& to) {
-  flight_.begin(command, "the way back to the mission").speed_mps = speed_mps[1];
+  FlownPart& way = flight_.begin(command, "the way back to the mission");
+  way.speed_mps = speed_mps[1];
   const double along = (to.at - place.at).norm();
   const double near = place.radius_m;
+  if (flight_.autopilot().is_px4() && near <= kAtHome + reach() && along <= near + 1) {
+    way.ground = FlownPart::Ground::touched_from_above;  // up or down, where it takes off or lands
+  }
   std::vector<Flight::Level> levels{
       {0, std::min(place.low_m, to.low), std::max(place.high_m, to.high)}};
   if (along > 2 * near + 1) {

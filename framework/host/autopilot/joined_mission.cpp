@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Returns of ArduPilot that join the mission and fly it on:
+// Returns that join the mission and fly it on, ArduPilot's:
 // AP_Mission::jump_to_closest_mission_leg, jump_to_landing_sequence. Its copters' failsafes do so
-// by AUTO_RTL, its aeroplanes' by RTL_AUTOLAND.
+// by AUTO_RTL, its aeroplanes' by RTL_AUTOLAND. PX4's do so by RTL_TYPE.
 #include <algorithm>
 #include <cmath>
 
@@ -125,7 +125,14 @@ std::vector<Walker::Entry> Walker::entries(Failsafe kind) const {
            (commands_[n].has_position() || commands_[n].altitude_m != 0);
   };
   for (std::size_t start = 0; start < commands_.size(); ++start) {
-    if (kind == Failsafe::joins_landing && commands_[start].number == kLandingStart) {
+    const Task task = task_of(start);
+    const bool is_item = task == Task::waypoint || task == Task::take_off || task == Task::land;
+    if (kind == Failsafe::joins_item && is_item && commands_[start].has_position()) {
+      all.push_back({start, {}});
+      if (task == Task::land) {
+        break;
+      }
+    } else if (kind == Failsafe::joins_landing && commands_[start].number == kLandingStart) {
       all.push_back({start, {}});
     } else if (kind == Failsafe::joins_return_path && commands_[start].number == kReturnPathStart) {
       std::optional<std::size_t> before;
@@ -185,6 +192,7 @@ std::vector<Walker::Joined> Walker::joins(std::size_t n, Failsafe kind, const Wh
   const int layers = std::max(1, int(std::ceil((place.high_m - place.low_m) / kLayer)));
   const double half = (place.high_m - place.low_m) / layers / 2;
   const double doubt = std::hypot(place.radius_m, half) + kDoubt / 2;
+  const double beside = is_px4() ? 0.005 : 0;  // it measures lengths otherwise
   std::map<std::size_t, Whereabouts> possible;
   for (int layer = 0; layer < layers; ++layer) {
     const Vec3 here(lon, lat, place.low_m + half * (2 * layer + 1));
@@ -199,7 +207,7 @@ std::vector<Walker::Joined> Walker::joins(std::size_t n, Failsafe kind, const Wh
     }
     const double nearest = *std::min_element(distances.begin(), distances.end());
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (distances[k] <= nearest + 2 * doubt) {
+      if (distances[k] <= nearest + 2 * doubt + beside * nearest) {
         const Whereabouts none{place.at, place.radius_m, kInfinity, -kInfinity};
         Whereabouts& from = possible.try_emplace(all[k].command, none).first->second;
         from.low_m = std::min(from.low_m, here.z() - half);
@@ -278,12 +286,17 @@ bool Walker::join_mission(std::size_t n, Failsafe kind, const Whereabouts& place
       from.low_m = std::min(from.high_m, ground + kTakesOff);
     }
   }
+  join_each(n, joins(n, kind, from));
+  return true;
+}
+
+void Walker::join_each(std::size_t n, const std::vector<Joined>& joined) {
   const TimeSpan begin = mission_.time;
   TimeSpan end{kInfinity, 0};
   const std::size_t remarked = mission_.remarks.size();
-  for (const auto& [command, there] : joins(n, kind, from)) {
+  for (const auto& [command, there] : joined) {
     mission_.time = begin;
-    if (!is_copter) {
+    if (!autopilot_.is_copter()) {
       be_anywhere(there);
       forget_speeds();
     }
@@ -295,6 +308,39 @@ bool Walker::join_mission(std::size_t n, Failsafe kind, const Whereabouts& place
     Remark& remark = mission_.remarks[k];
     remark.rule = remark.weight == Weight::not_judged ? "joins" : remark.rule;
   }
+}
+
+// RtlMissionFast: on to the next item with a position, or to the nearest one where it holds before
+// it returns (COM_FAIL_ACT_T), then all of them as waypoints. It flies at the speed of its
+// parameters, and does not wait.
+bool Walker::fly_on(std::size_t n, const Whereabouts& place) {
+  if (!autopilot_.is_copter() || type_of_return() != 2 || !only_landing()) {
+    return false;
+  }
+  if (!plan_.home) {
+    give_up(n, "where home is, above which its heights are, the file does not say");
+    return true;
+  }
+  const std::vector<Entry> items = entries(Failsafe::joins_item);
+  std::size_t position = 0;
+  for (std::size_t k = 0; k <= *only_landing(); ++k) {
+    if (items[position].command == k) {
+      ++position;
+    } else if (task_of(k) != Task::payload) {
+      give_up(n, "a return along a mission (RTL_TYPE 2) with " + name_of_command(commands_[k]) +
+                     " is not judged: with waypoints alone");
+      return true;
+    }
+  }
+  forget_speeds();
+  std::vector<Joined> joined = joins(n, Failsafe::joins_item, place);
+  const auto next = std::find_if(items.begin(), items.end(),
+                                 [&](const Entry& item) { return item.command >= n; });
+  if (next != items.end() && !joined.empty()) {
+    std::erase_if(joined, [&](const Joined& one) { return one.first == next->command; });
+    joined.emplace_back(next->command, place);
+  }
+  join_each(n, joined);
   return true;
 }
 
@@ -313,8 +359,8 @@ void Walker::join_at(std::size_t n, std::size_t command, const Whereabouts& plac
       task == Task::loiter_to_altitude ||
       (task == Task::loiter_turns && !(is_copter && commands_[item].params[2] == 0));
   // Some versions take a circle after the one at home for reached.
-  const bool is_flown_to =
-      task == Task::waypoint || (is_circle && (is_copter || parameter("RTL_AUTOLAND") != 1));
+  const bool is_flown_to = task == Task::waypoint || (is_px4() && task == Task::take_off) ||
+                           (is_circle && (is_copter || parameter("RTL_AUTOLAND") != 1));
   if (!(is_flown_to || lands) || !commands_[item].has_position() ||
       (is_copter && !lands && commands_[item].altitude_m == 0) ||
       formats::is_above_ground(commands_[item].frame)) {
@@ -391,7 +437,12 @@ const FlownMission& Walker::rest_from(std::size_t n, std::size_t command, std::s
   bool ends = false;
   if (autopilot_.is_copter()) {
     flight_.before = item;
-    ends = fly_hover(item);
+    if (task_of(item) == Task::land) {  // above its place, where the way back has led
+      hover_->land(item, "the landing");
+      ends = !takes_off_again(item);
+    } else {
+      ends = fly_hover(item);
+    }
   } else if (task_of(item) != Task::waypoint) {
     flight_.before = n;
     ends = fly_wing(item);

@@ -85,6 +85,45 @@ void Walker::return_home(std::size_t n) {
   flight_.before = n;
 }
 
+int Walker::type_of_return() const {
+  return is_px4() ? int(std::lround(parameter("RTL_TYPE"))) : 0;
+}
+
+std::optional<std::size_t> Walker::only_landing() const {
+  std::optional<std::size_t> landing;
+  for (std::size_t n = 0; n < commands_.size(); ++n) {
+    const Task task = task_of(n);
+    const bool lands = task == Task::land || task == Task::vtol_land;
+    if (task == Task::landing_start || (lands && landing)) {
+      return std::nullopt;
+    }
+    landing = lands ? std::optional(n) : landing;
+  }
+  const bool is_known = landing && task_of(*landing) == Task::land &&
+                        commands_[*landing].has_position() &&
+                        !formats::is_above_ground(commands_[*landing].frame);
+  return is_known ? landing : std::nullopt;
+}
+
+// RTL::setRtlTypeAndDestination. Some versions know no type 5: to them it is 0.
+std::string Walker::unjudged_type() const {
+  const int type = type_of_return();
+  const bool has_landing =
+      std::any_of(plan_.commands.begin(), plan_.commands.end(), [](const auto& command) {
+        const Task task = formats::command_task(command.number).task;
+        return task == Task::landing_start || task == Task::land || task == Task::vtol_land;
+      });
+  if (type == 5 && plan_.rally.empty()) {
+    return "a return to a safe point (RTL_TYPE 5), of which there is none";
+  }
+  if ((type == 1 || type == 3) && has_landing && !(autopilot_.is_copter() && only_landing())) {
+    return "a return that may go to a landing of more than one item, or of an aeroplane (RTL_TYPE)";
+  }
+  return type == 0 || type == 1 || type == 3 || type == 5
+             ? ""
+             : "a return along the mission (RTL_TYPE " + std::to_string(type) + ")";
+}
+
 std::vector<Walker::Refuge> Walker::refuges() const {
   constexpr double kAlike = 20;  // metres
   const double doubt = failsafe_ ? failsafe_->radius_m : 0;
@@ -104,12 +143,19 @@ std::vector<Walker::Refuge> Walker::refuges() const {
     }
   }
   const Refuge home{home_, {}, home_z_};
-  // PX4's RTL_TYPE 1 flies to a safe point even where home is nearer.
-  const bool leaves_home_out =
-      is_px4() && !autopilot_.is_copter() && parameter("RTL_TYPE") == 1 && !plan_.rally.empty();
+  const int type = type_of_return();
+  if (const auto landing = only_landing(); landing && (type == 1 || type == 3)) {
+    const Destination to = destination(*landing);
+    all.push_back({to.at, {}, to.low, true});
+    nearest = std::min(nearest, distance(all.back()));
+  }
+  // PX4's type 1 flies to a safe point even where home is nearer. Some versions do so by type 5,
+  // and some not of copters.
+  const bool leaves_home_out = type == 1 && !autopilot_.is_copter() && !plan_.rally.empty();
+  const bool may_leave_home_out = type == 1 || type == 5;
   if (!leaves_home_out && (is_px4() || parameter("RALLY_INCL_HOME") != 0)) {
     all.push_back(home);
-    nearest = std::min(nearest, distance(home));
+    nearest = may_leave_home_out ? nearest : std::min(nearest, distance(home));
   } else if (!std::isfinite(nearest)) {
     all.push_back(home);
   }
@@ -171,8 +217,8 @@ std::array<double, 2> Walker::return_heights(double z, double distance,
 }
 
 void Walker::return_hover(std::size_t n, const Refuge& refuge) {
-  if (is_px4() && parameter("RTL_TYPE") != 0) {
-    give_up(n, "a return that may go to a landing, or along the mission (RTL_TYPE), is not judged");
+  if (const std::string type = unjudged_type(); !type.empty()) {
+    give_up(n, type + " is not judged");
     return;
   }
   forget_speeds();
@@ -196,11 +242,21 @@ void Walker::return_hover(std::size_t n, const Refuge& refuge) {
     home.high = hover_->high;
     hover_->go(n, "the way home", home);
   }
+  const double beside = failsafe_ ? distance + failsafe_->radius_m : distance;
+  if (refuge.is_of_mission && beside <= parameter("NAV_ACC_RAD") + 2) {
+    // It is near enough to sink at once, on its way to the place.
+    flight_.begin(n, "the landing at home").ground = FlownPart::Ground::touched_from_above;
+    flight_.add_tower({refuge.at, beside, 0, 0}, flight_.ground(refuge.at), highest, 2);
+  }
   hover_->land(n, "the landing at home");
 }
 
 void Walker::return_wing(std::size_t n, const Refuge& refuge) {
   forget_speeds();
+  if (const std::string type = unjudged_type(); !type.empty()) {
+    give_up(n, type + " is not judged");
+    return;
+  }
   const bool has_landing =
       std::any_of(plan_.commands.begin(), plan_.commands.end(), [](const auto& command) {
         const Task task = formats::command_task(command.number).task;
@@ -208,14 +264,8 @@ void Walker::return_wing(std::size_t n, const Refuge& refuge) {
         return task == Task::landing_start || task == Task::land || task == Task::vtol_land ||
                command.number == kReturnPathStart;
       });
-  const double type = is_px4() ? parameter("RTL_TYPE") : 0;
   const bool is_quadplane = !is_px4() && autopilot_.airframe == Airframe::vtol;
-  const bool goes_to_landing =
-      has_landing && (is_px4() ? type != 0 : is_quadplane && parameter("RTL_AUTOLAND") != 0);
-  if (type > 1) {
-    give_up(n, "a return along the mission (RTL_TYPE) is not judged");
-    return;
-  }
+  const bool goes_to_landing = has_landing && is_quadplane && parameter("RTL_AUTOLAND") != 0;
   if (goes_to_landing || (!is_px4() && parameter("Q_RTL_MODE") != 0)) {
     flight_.remark(Weight::not_judged, "not_judged", n,
                    "a return that goes to a landing or ends in hover is not judged");

@@ -160,8 +160,16 @@ class Walker {
     Eigen::Vector2d at{0, 0};
     std::optional<double> height_m;  ///< of a rally point, above home
     double z = 0;                    ///< above sea level
+    bool is_of_mission = false;      ///< where it lands
   };
-  /// Home or the nearest rally point, all those whose distances hardly differ.
+  /// PX4's RTL_TYPE; 0: another's.
+  int type_of_return() const;
+  /// The one command that lands, where that is all of the landing that PX4 finds in the mission.
+  std::optional<std::size_t> only_landing() const;
+  /// What of PX4's type of return is not judged; "" if all of it is.
+  std::string unjudged_type() const;
+  /// Home, the nearest rally point or the mission's landing, all those whose distances hardly
+  /// differ.
   std::vector<Refuge> refuges() const;
   /// The lowest and the highest, above sea level, at which a hovering vehicle returns that is so
   /// high and so far away.
@@ -169,9 +177,9 @@ class Walker {
   void return_hover(std::size_t n, const Refuge& refuge);
   void return_wing(std::size_t n, const Refuge& refuge);
 
-  // Returns of ArduPilot that join the mission.
+  // Returns that join the mission.
 
-  enum class Failsafe { returns, joins_return_path, joins_landing };
+  enum class Failsafe { returns, joins_return_path, joins_landing, joins_item };
   /// What the parameters have failsafes do; remarks what is not modelled.
   std::vector<Failsafe> failsafes(std::size_t n);
   /// That of an aeroplane's return.
@@ -183,7 +191,7 @@ class Walker {
   };
   /// Behind the last command that belongs to a return path.
   std::size_t end_of_path(std::size_t start) const;
-  /// Those of return paths (188), or of landing sequences (189).
+  /// Those of return paths (188), of landing sequences (189), or PX4's items up to its landing.
   std::vector<Entry> entries(Failsafe kind) const;
   /// Where it is as ArduPilot takes it: degrees and metres above sea level; none if not known here.
   std::optional<Vec3> place_of_entry(std::size_t command) const;
@@ -195,7 +203,12 @@ class Walker {
   bool is_on_way_home(std::size_t n) const;
   /// Flies so; false if there is nothing to join.
   bool join_mission(std::size_t n, Failsafe kind, const Whereabouts& place);
+  /// Each of them, as ways of one return.
+  void join_each(std::size_t n, const std::vector<Joined>& joined);
   void join_at(std::size_t n, std::size_t command, const Whereabouts& place);
+  /// PX4's copter's return along the mission to its landing; false if it has none, or is of another
+  /// type.
+  bool fly_on(std::size_t n, const Whereabouts& place);
   /// What is flown from a command on, after its first item is reached at heights.
   const FlownMission& rest_from(std::size_t n, std::size_t command, std::size_t item,
                                 const Whereabouts& arrival);
