@@ -256,6 +256,20 @@ TEST(Returnable, TheJudgeNamesThePlaceWithoutAWayHome) {
   }
 }
 
+TEST(Returnable, TreesNameItWhereItAloneRefusesThem) {
+  // 0.25 Wh there and as much back.
+  Request request = request_in({}, {5, 5, 5}, {95, 5, 5}, {{0, 0, 0}, {100, 10, 10}});
+  request.vehicle.speed_mps = 10;
+  request.budget.max_iterations = 400;
+  apply_constraints(request, {{"returnable", make_constraint("returnable", text_of(0.3, {}))}},
+                    AppliesTo::route);
+  for (const char* planner : {"rrt_star", "informed_rrt_star"}) {
+    const PlanResult none = make_planner(planner, "{range_m: 25}")->plan(request);
+    EXPECT_NE(none.status, PlanStatus::solved);
+    EXPECT_NE(none.message.find("refused by returnable ("), std::string::npos) << none.message;
+  }
+}
+
 TEST(Returnable, NamesItselfWhereItsCellsDoNotFit) {
   Request request = request_in({}, {5, 5, 5}, {95, 5, 5}, {{0, 0, 0}, {100, 10, 10}});
   apply_constraints(request,

@@ -173,6 +173,7 @@ class PoseMotion {
   void moved(Node node) { memory_.arrivals[std::size_t(node)] = arrival_; }
 
   const LegRules& rules() const { return paths_.legs(); }
+  std::string refusals() const { return rules().refusals(); }
   Route route_to(Node node) const {
     std::vector<State> poses;
     for (; node != LegTree::kNone; node = memory_.legs.parent(node)) {

@@ -366,7 +366,7 @@ class StarGrowth {
                                        : PlanStatus::no_route;
     const double away =
         std::min(nearest_, (request_.start.position - request_.goal.position).norm());
-    result.message = reason(memory_, away, motion_.rules().refusals());
+    result.message = reason(memory_, away, motion_.refusals());
     return result;
   }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "altiplan/check.hpp"
@@ -133,16 +135,28 @@ class StraightMotion {
   void moved(Node) {}
 
   const LegRules& rules() const { return rules_; }
+  /// Of the last legs by the rules, and of all by limits on totals.
+  std::string refusals() const {
+    std::string text = rules_.refusals();
+    for (const auto& [name, count] : used_up_) {
+      text += (text.empty() ? "" : ", ") + name + " (" + std::to_string(count) + " in all)";
+    }
+    return text;
+  }
   Route route_to(Node node) const { return memory_.legs.way_to(node); }
 
  private:
-  bool may_keep_totals(Node from, const State& to) const {
+  bool may_keep_totals(Node from, const State& to) {
     if (resources_.empty()) {
       return true;
     }
     Polyline path = memory_.legs.way_to(from);
     path.push_back(to);
-    return used_up(resources_, path, request_) == nullptr;
+    const Resource* limit = used_up(resources_, path, request_);
+    if (limit != nullptr) {
+      ++used_up_[limit->name];
+    }
+    return limit == nullptr;
   }
   /// True if below another parent nothing that is limited is more than it was, here and so in all
   /// of the branch.
@@ -185,6 +199,7 @@ class StraightMotion {
   StarMemory& memory_;
   LegRules rules_;
   std::vector<Resource> resources_;
+  std::map<std::string, std::int64_t> used_up_;  ///< legs by the limit that they do not keep
   std::optional<Approach> before_start_;
   const Objective* objective_;  ///< null: length
   bool is_point_;               ///< the goal has no tolerance
