@@ -130,8 +130,11 @@ class Returns(PlanCase):
         (self.folder / "cure.param").unlink()
         out, err = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--max-agl", "200", "--fix-returns",
                              "cure.param", code=1)
-        self.assertIn("not written: found no return height", err)
+        self.assertIn("not written: the mission itself fails, which no return cures (item 1 (take-off): ", err)
         self.assertFalse((self.folder / "cure.param").exists())
+        self.call("mission.plan", "--terrain", "ridge.asc", "--returns", "--max-agl", "270", "--fix-returns",
+                  "cure.param", code=1)
+        self.assertTrue((self.folder / "cure.param").exists())
 
     def test_rally_points_that_cure(self):
         """Where no return height does: below a ceiling, which the flight over the ridge keeps."""
@@ -395,6 +398,8 @@ class Returns(PlanCase):
                 (PLANE, self.beyond(False), {"FS_LONG_ACTN": 2, "RTL_ALTITUDE": 260}, "FS_LONG_ACTN 2"),
                 (COPTER, self.beyond() + [(21, 1900, 300, 0)] + self.AT_HOME[:2] + [(177, 6, 1)] + self.AT_HOME[2:],
                  self.AUTO_RTL, "jumps"),
+                (COPTER, [(22, 0, 0, 60), (16, -300, 0, 60), (21, -300, 100, 0), (189,), (179, 1), (16, -300, -100, 60),
+                          (21, 0, -200, 0)], self.AUTO_RTL, "whether it sets its home where it joins the mission"),
                 (PX4_COPTER, self.beyond(), {"RTL_TYPE": 2, "RTL_RETURN_ALT": 250}, "RTL_TYPE"),
                 (PX4_COPTER, self.beyond() + self.LANDING, {"RTL_TYPE": 4, "RTL_RETURN_ALT": 250}, "RTL_TYPE 4"),
                 (PX4_COPTER, self.beyond() + self.LANDING, {"RTL_TYPE": 5, "RTL_RETURN_ALT": 250}, "RTL_TYPE 5"),
@@ -440,6 +445,19 @@ class Returns(PlanCase):
     def test_a_mission_that_is_refused_has_no_returns(self):
         told = self.returns(PX4_COPTER, [(22, 0, 0, 50), (82, 300, 0, 50)], code=1)
         self.assertEqual(told["returns"]["verdict"], "not_judged")
+
+    def test_each_rule_that_refuses_a_stretch_is_named(self):
+        lon = self.LON + 500 / METRES / math.cos(math.radians(self.LAT))
+        self.zones("z.json", self.around(lon, self.LAT, 0.001), 500)
+        options = "--airspace", "z.json", "--battery", "60", "--power", "360"
+        told = self.returns(COPTER, self.beyond(), *options, code=1)
+        last = told["returns"]["refused"][-1]
+        self.assertEqual((last["rule"], [(one["rule"], one["layer"]) for one in last["others"]]),
+                         ("ground", [("energy", ""), ("clearance", "z.json")]))
+        out, _ = self.call("mission.plan", "--terrain", "ridge.asc", "--returns", *options, code=1)
+        self.assertRegex(out, "flies into the ground.*; also: needs .* Wh .*; also: the way home: lies up to .* 'z.json'")
+        alone = self.returns(COPTER, self.beyond(), code=1)["returns"]["refused"][-1]
+        self.assertEqual((alone["rule"], alone.get("others")), ("ground", None))
 
     def test_a_battery_that_ends_before_the_way_home(self):
         way = [(22, 0, 0, 50), (16, 0, 900, 50), (16, 0, 100, 50)]

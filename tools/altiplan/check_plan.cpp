@@ -198,6 +198,13 @@ void fix_returns(const PlanCheck& plan, const PlanReport& report, const std::str
     warn(file + ": not written: the returns pass as they are");
     return;
   }
+  const auto own = std::find_if(report.findings.begin(), report.findings.end(),
+                                [](const Finding& finding) { return finding.is_own_way; });
+  if (own != report.findings.end()) {
+    warn(file + ": not written: the mission itself fails, which no return cures (" +
+         items_of(*own) + ": " + own->violation.message + "): cure it first (--fix)");
+    return;
+  }
   const bool by_rally = std::filesystem::path(file).extension() == ".plan";
   std::string words;
   busy("curing the returns", [&] {

@@ -43,7 +43,12 @@ bool Walker::set_home(std::size_t n) {
   const bool is_here = command.params[0] == 1 || (is_nowhere && autopilot_.is_copter());
   former_home_z_ = home_z_;
   if (is_pending_) {
-    return give_up(n, "whether and when a condition lets it set its home is not judged");
+    const bool has_condition = std::any_of(orders_.begin(), orders_.end(), [&](std::size_t k) {
+      return task_of(k) == Task::condition;
+    });
+    return give_up(n, has_joined_ && !has_condition
+                          ? "whether it sets its home where it joins the mission is not judged"
+                          : "whether and when a condition lets it set its home is not judged");
   }
   if (++homes_set_ > kMaxHomes) {
     return give_up(n, "sets its home more than 100 times: what it flies then is not judged");

@@ -377,13 +377,10 @@ std::vector<BandJudge::Found> BandJudge::violations(const FlownPart& part) const
   return found;
 }
 
-bool BandJudge::is_valid(const FlownPart& part) const {
-  using Ground = FlownPart::Ground;
-  if (std::any_of(part.strips.begin(), part.strips.end(),
-                  [&](const Strip& strip) { return is_above_void(strip); })) {
-    return false;
+bool BandJudge::keeps_off_layers(const FlownPart& part) const {
+  if (sky_.layers().empty() || part.strips.empty() || is_clear(part.strips)) {
+    return true;
   }
-  const bool may_block = !sky_.layers().empty() && !part.strips.empty() && !is_clear(part.strips);
   const auto is_in_sky = [&](const Line& line) {
     return leg_ok(std::nullopt, line.leg, within(line.reach_m).sky);
   };
@@ -391,8 +388,14 @@ bool BandJudge::is_valid(const FlownPart& part) const {
   const auto is_low_in_sky = [&](const Strip& strip) {
     return is_in_sky({Leg::straight(strip.from, strip.to), strip.reach_m});
   };
-  if (may_block && !(std::all_of(part.strips.begin(), part.strips.end(), is_low_in_sky) &&
-                     look_at_suspects(part.strips, is_in_sky))) {
+  return std::all_of(part.strips.begin(), part.strips.end(), is_low_in_sky) &&
+         look_at_suspects(part.strips, is_in_sky);
+}
+
+bool BandJudge::keeps_off_ground(const FlownPart& part) const {
+  using Ground = FlownPart::Ground;
+  if (std::any_of(part.strips.begin(), part.strips.end(),
+                  [&](const Strip& strip) { return is_above_void(strip); })) {
     return false;
   }
   const auto is_line_valid = [&](const Line& line) {

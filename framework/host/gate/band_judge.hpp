@@ -35,7 +35,12 @@ class BandJudge {
   /// ground do not count, but that a slanted path keeps off the ground as a SlantedEnd does.
   std::vector<Found> violations(const FlownPart& part) const;
   /// True if there is none; quicker.
-  bool is_valid(const FlownPart& part) const;
+  bool is_valid(const FlownPart& part) const {
+    return keeps_off_layers(part) && keeps_off_ground(part);
+  }
+  /// True if there is none of the ground, heights and constraints, or of the layers without ground.
+  bool keeps_off_ground(const FlownPart& part) const;
+  bool keeps_off_layers(const FlownPart& part) const;
   LegHeights heights(const FlownPart& part) const;
 
  private:

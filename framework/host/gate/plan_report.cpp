@@ -245,6 +245,7 @@ class Gate {
     finding.what = part.what;
     finding.item = number_of(part.command);
     finding.at = found.at;
+    finding.is_own_way = !part.is_return;
     names_.add_to(finding);
     name_void(finding, world_);
     if (!part.what.empty()) {

@@ -26,6 +26,7 @@ struct Finding {
   std::string zone{};              ///< name of the violated layer's part, "" if it has none
   bool is_over_void = false;       ///< there the elevation model has no height
   bool is_unjudged = false;        ///< nothing is known to be wrong
+  bool is_own_way = false;         ///< of the mission's way, whatever its returns are
 };
 
 /// A part of a flight, for tables.
@@ -47,9 +48,10 @@ struct RefusedReturn {
   std::size_t first = 0;  ///< commands that are carried out at its beginning and at its end
   std::size_t last = 0;
   double worst_s = 0;
-  std::size_t worst = 0;     ///< command
-  Finding finding;           ///< of the return at the worst time
-  std::vector<Vec3> places;  ///< up to nine along it, at their greatest heights, local metres
+  std::size_t worst = 0;        ///< command
+  Finding finding;              ///< of the return at the worst time
+  std::vector<Finding> others;  ///< by other rules, each of a return of the stretch
+  std::vector<Vec3> places;     ///< up to nine along it, at their greatest heights, local metres
 };
 
 /// A stretch of the flight from which an aeroplane without its engine glides to the same site.

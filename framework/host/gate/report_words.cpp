@@ -192,8 +192,13 @@ std::string ReturnsReport::no_return_in_words() const {
 std::string in_words(const RefusedReturn& refused, const PlanReport& report) {
   const std::string& what = refused.finding.violation.message;
   const bool is_part = what.starts_with("the ");  // "the way home: …"
-  return stretch_in_words(refused, report) + ", worst at " + time_of_flight(refused.worst_s) +
-         ": a return" + (is_part ? "'s " + what.substr(4) : " " + what);
+  std::string words = stretch_in_words(refused, report) + ", worst at " +
+                      time_of_flight(refused.worst_s) + ": a return" +
+                      (is_part ? "'s " + what.substr(4) : " " + what);
+  for (const Finding& other : refused.others) {
+    words += "; also: " + other.violation.message;
+  }
+  return words;
 }
 
 Verdict ReturnsReport::overall() const {

@@ -83,12 +83,16 @@ class ReturnJudge {
   }
 
  private:
+  /// What refuses a return.
+  enum Kind : unsigned { kEnergy = 1, kRemark = 2, kLayer = 4, kGround = 8 };
+
   struct Refused {
     double from_s;
     double to_s;
     std::size_t command;
     Whereabouts place;
     double needed_wh;  ///< by then and for the way home; 0: no battery is known
+    unsigned kinds;
   };
 
   /// On the slowest flight, by the end of the place and for the way home from there.
@@ -107,11 +111,23 @@ class ReturnJudge {
     const std::size_t command = places_->part().command;
     const FlownMission home = returns_.from(command, place);
     const bool is_unjudged = note_unjudged(home);
-    if (is_unjudged && !is_refused(place, home)) {
+    const unsigned kinds = refused_by(place, home);
+    if (is_unjudged && kinds == 0) {
       return;
     }
     const auto [from_s, to_s] = places_->times_of(place, 2 * place.radius_m);
-    refused_.push_back({from_s, to_s, command, place, needed_wh(place, home)});
+    refused_.push_back({from_s, to_s, command, place, needed_wh(place, home), kinds});
+  }
+
+  unsigned refused_by(const Whereabouts& place, const FlownMission& home) {
+    unsigned kinds = is_too_much(needed_wh(place, home)) ? unsigned(kEnergy) : 0;
+    for (const Remark& remark : home.remarks) {
+      kinds |= remark.weight == Remark::Weight::fails ? unsigned(kRemark) : 0;
+    }
+    for (const FlownPart& part : home.parts) {
+      kinds |= refused_by(part);
+    }
+    return kinds;
   }
 
   bool is_refused(const Whereabouts& place, const FlownMission& home) {
@@ -119,8 +135,8 @@ class ReturnJudge {
            std::any_of(
                home.remarks.begin(), home.remarks.end(),
                [](const Remark& remark) { return remark.weight == Remark::Weight::fails; }) ||
-           !std::all_of(home.parts.begin(), home.parts.end(),
-                        [&](const FlownPart& part) { return is_valid(part); });
+           std::any_of(home.parts.begin(), home.parts.end(),
+                       [&](const FlownPart& part) { return refused_by(part) != 0; });
   }
 
   bool note_unjudged(const FlownMission& home) {
@@ -152,25 +168,29 @@ class ReturnJudge {
   }
 
   /// What is flown at the end is the same for many.
-  bool is_valid(const FlownPart& part) {
+  unsigned refused_by(const FlownPart& part) {
+    const auto judged = [&] {
+      return (judge_.keeps_off_layers(part) ? 0 : unsigned(kLayer)) |
+             (judge_.keeps_off_ground(part) ? 0 : unsigned(kGround));
+    };
     if (part.known > 0) {
-      const auto [known, is_new] = known_parts_.try_emplace(part.known, false);
+      const auto [known, is_new] = known_parts_.try_emplace(part.known, 0);
       if (is_new) {
-        known->second = judge_.is_valid(part);
+        known->second = judged();
       }
       return known->second;
     }
     if (part.strips.empty() ||
         (part.what != "the circle at home" && part.what != "the landing at home")) {
-      return judge_.is_valid(part);
+      return judged();
     }
     const Strip& first = part.strips.front();
     const std::array<double, 7> key = {
         double(part.strips.size()), first.from.x(), first.from.y(), first.from.z(),
         first.from_high_m,          first.to.x(),   first.reach_m};
-    const auto [known, is_new] = known_.try_emplace(key, false);
+    const auto [known, is_new] = known_.try_emplace(key, 0);
     if (is_new) {
-      known->second = judge_.is_valid(part);
+      known->second = judged();
     }
     return known->second;
   }
@@ -268,6 +288,7 @@ class ReturnJudge {
       stretch.worst_s = (worst->from_s + worst->to_s) / 2;
       stretch.worst = worst->command;
       stretch.finding = finding_of(*worst, gap);
+      add_others(std::span(refused_).subspan(first, n - first), stretch);
       for (std::size_t k = 0; k < kPlaces; ++k) {
         const Whereabouts& place = refused_[first + k * (n - first) / kPlaces].place;
         const Vec3 there(place.at.x(), place.at.y(), place.high_m);
@@ -279,10 +300,64 @@ class ReturnJudge {
     }
   }
 
-  /// What is wrong with a return.
-  Finding finding_of(const Refused& refused, double gap) {
-    Finding finding;
+  Kind kind_of(const Finding& finding) const {
+    const std::string& layer = finding.violation.layer;
+    return finding.violation.constraint == "energy"            ? kEnergy
+           : !layer.empty() && !is_ground_layer(layer, world_) ? kLayer
+           : finding.at                                        ? kGround
+                                                               : kRemark;
+  }
+
+  /// What else refuses returns of a stretch: of each other kind a return.
+  void add_others(std::span<const Refused> all, RefusedReturn& stretch) {
+    const Kind told = kind_of(stretch.finding);
+    for (const Kind kind : {kEnergy, kRemark, kLayer, kGround}) {
+      const Refused* example = nullptr;  // of a battery, that which needs most
+      for (const Refused& refused : all) {
+        const bool is_first = example == nullptr || refused.needed_wh > example->needed_wh;
+        example = (refused.kinds & kind) != 0 && is_first ? &refused : example;
+      }
+      if (kind != told && example != nullptr) {
+        stretch.others.push_back(finding_of(*example, kind));
+      }
+    }
+  }
+
+  /// What of one kind is wrong with a return.
+  Finding finding_of(const Refused& refused, Kind kind) {
     const FlownMission home = returns_.from(refused.command, refused.place);
+    Finding finding;
+    if (kind == kEnergy) {
+      set_energy(refused, finding);
+    } else if (kind == kRemark) {
+      set_remark(home, finding);
+    } else {
+      add_worst(home, kind, finding);
+    }
+    return named(std::move(finding), refused);
+  }
+
+  /// The worst violation of one kind.
+  void add_worst(const FlownMission& home, Kind kind, Finding& finding) {
+    const auto off = [](const Finding& one) {
+      return std::abs(one.violation.value - one.violation.limit);
+    };
+    for (const FlownPart& part : home.parts) {
+      for (const BandJudge::Found& found : judge_.violations(part)) {
+        Finding one;
+        one.violation = found.violation;
+        one.at = found.at;
+        one.what = part.what;
+        if (kind_of(one) == kind && (!finding.at || off(one) > off(finding))) {
+          finding = std::move(one);
+        }
+      }
+    }
+    names_.add_to(finding);
+    name_void(finding, world_);
+  }
+
+  static void set_remark(const FlownMission& home, Finding& finding) {
     for (const Remark& remark : home.remarks) {
       if (remark.weight == Remark::Weight::fails) {
         finding.violation.constraint = remark.rule;
@@ -291,16 +366,35 @@ class ReturnJudge {
         finding.violation.message = remark.message;
       }
     }
+  }
+
+  void set_energy(const Refused& refused, Finding& finding) const {
+    finding.violation.constraint = "energy";
+    finding.violation.value = refused.needed_wh;
+    finding.violation.limit = battery_->usable_wh();
+    finding.violation.unit = "Wh";
+    const std::string needed = std::isfinite(refused.needed_wh)
+                                   ? with_decimals(refused.needed_wh, 1) + " Wh"
+                                   : "more than any battery holds";
+    finding.violation.message = "needs " + needed + " from take-off to its end, where " +
+                                with_decimals(battery_->usable_wh(), 1) + " Wh may be used";
+  }
+
+  Finding named(Finding finding, const Refused& refused) const {
+    finding.item = plan_.commands[refused.command].item;
+    finding.items = {name_of_command(plan_.commands[refused.command])};
+    finding.violation.message =
+        prefix_ + (finding.what.empty() ? "" : finding.what + ": ") + finding.violation.message;
+    return finding;
+  }
+
+  /// What is wrong with a return.
+  Finding finding_of(const Refused& refused, double gap) {
+    Finding finding;
+    const FlownMission home = returns_.from(refused.command, refused.place);
+    set_remark(home, finding);
     if (is_too_much(refused.needed_wh)) {
-      finding.violation.constraint = "energy";
-      finding.violation.value = refused.needed_wh;
-      finding.violation.limit = battery_->usable_wh();
-      finding.violation.unit = "Wh";
-      const std::string needed = std::isfinite(refused.needed_wh)
-                                     ? with_decimals(refused.needed_wh, 1) + " Wh"
-                                     : "more than any battery holds";
-      finding.violation.message = "needs " + needed + " from take-off to its end, where " +
-                                  with_decimals(battery_->usable_wh(), 1) + " Wh may be used";
+      set_energy(refused, finding);
     }
     names_.add_worst(home.parts, judge_, finding);
     if (gap < 0 && std::isfinite(gap) && !finding.is_over_void) {
@@ -313,11 +407,7 @@ class ReturnJudge {
       finding.violation.message =
           "flies into the ground, up to " + with_decimals(-gap, 1) + " m below its surface";
     }
-    finding.item = plan_.commands[refused.command].item;
-    finding.items = {name_of_command(plan_.commands[refused.command])};
-    finding.violation.message =
-        prefix_ + (finding.what.empty() ? "" : finding.what + ": ") + finding.violation.message;
-    return finding;
+    return named(std::move(finding), refused);
   }
 
   const formats::MissionFile& plan_;
@@ -332,8 +422,8 @@ class ReturnJudge {
   const FlownPlaces* places_ = nullptr;  ///< that are judged
   std::vector<Refused> refused_;
   std::vector<Parameters::Used> parameters_;
-  std::map<std::array<double, 7>, bool> known_;
-  std::map<std::size_t, bool> known_parts_;
+  std::map<std::array<double, 7>, unsigned> known_;
+  std::map<std::size_t, unsigned> known_parts_;
   double end_s_ = 0;
 };
 

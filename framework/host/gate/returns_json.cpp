@@ -21,6 +21,12 @@ Json refused_json(const std::vector<RefusedReturn>& stretches, const Mission& wo
              {"layer", finding.violation.layer},
              {"zone", finding.zone},
              {"message", finding.violation.message}};
+    for (const Finding& other : stretch.others) {
+      one["others"].push_back({{"rule", other.violation.constraint},
+                               {"layer", other.violation.layer},
+                               {"zone", other.zone},
+                               {"message", other.violation.message}});
+    }
     if (finding.at) {
       const auto [lon, lat] = world.truth.frame().to_lonlat(finding.at->x(), finding.at->y());
       one["lonlat"] = {lon, lat};
