@@ -227,6 +227,16 @@ class Cli(CliCase):
         for text in ("altiplan: 1\n---\naltiplan: 1\n", "a: [", "", "altiplan: 1\nsteps: null\n"):
             self.call("validate", self.write("worse.yaml", text), code=3)
 
+    def test_what_a_planner_cannot_minimise_is_refused_before_the_run(self):
+        # Of an objective that needs the world, validate knows with --build alone what it depends on.
+        objective = "objective: {weighted: {of: [length: {}, curvature: {}]}}\n"
+        bad = self.write("bad.yaml", PIPELINE.replace("steps:", objective + "steps:"))
+        for command in (["validate"], ["validate", "--build"], ["run"]):
+            out, err = self.call(*command, bad, code=3)
+            self.assertEqual(out, "")
+            self.assertRegex(err, r"^%s:6:\d+: steps\.0\.plan: the planner 'astar' minimises costs of legs"
+                             % re.escape(bad))
+
     def test_bad_files_are_refused_by_validate_and_run(self):
         sample = bad_files()[::10]
         self.assertGreaterEqual(len(sample), 40)

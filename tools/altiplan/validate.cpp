@@ -52,6 +52,8 @@ std::string validate_one(const std::string& file, const ValidateArguments& argum
                                   : host::load_scenario(file, arguments.overrides);
   if (arguments.builds) {
     build(config);
+  } else {
+    host::expect_minimised(config);
   }
   return arguments.builds ? "valid, and its world can be built" : "valid";
 }

@@ -76,6 +76,9 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
 /// Binds the pipeline's steps into config.steps, assigns missing ids and checks them.
 void check_steps(Checker& checker, Config& config);
 
+/// The plan steps, alternatives and replans whose planners cannot minimise such an objective.
+std::vector<Problem> planner_problems(const Config& config, const Objective& objective);
+
 /// The kind of plugin that the step names: `plan: NAME` looks for a planner, then for a local
 /// planner.
 const char* kind_of_step(Registry& registry, const StepEntry& step);

@@ -62,31 +62,6 @@ void check_replan(Checker& checker, const Config& config, const StepEntry& step,
   check_plugins(checker, config, planner, replan);
 }
 
-/// Refuses a plan step that minimises length alone where the files ask for another objective.
-void check_minimises(Checker& checker, const Config& config, const StepEntry& step,
-                     const Value& tree) {
-  const ObjectiveEntry* objective = config.objective();
-  if (objective == nullptr || step.verb != Verb::plan || step.plugin.empty()) {
-    return;
-  }
-  Traits traits;
-  const std::string kind = kind_of_step(*config.registry, step);
-  if (kind == "planner") {
-    try {
-      traits = config.registry->get(kind, step.plugin).planner(&step.with)->traits();
-    } catch (const Error&) {
-      return;  // its parameters are refused
-    }
-  }
-  if (!traits.objectives && !traits.whole_routes) {
-    checker.problem(place_of(tree, "plan"), step.path + ".plan",
-                    "the " + kind + " '" + step.plugin +
-                        "' minimises length alone, not the objective '" + objective->plugin +
-                        "': use one with the trait `objectives`, such as astar, or objective: "
-                        "{length: {}}");
-  }
-}
-
 /// Checks the step's plugin and smoothers, with their parameters.
 void check_plugins(Checker& checker, const Config& config, const StepEntry& step,
                    const Value& tree) {
@@ -107,7 +82,6 @@ void check_plugins(Checker& checker, const Config& config, const StepEntry& step
     checker.check_plugin(kind_of_step(registry, step), step.plugin, step.with,
                          place_of(tree, name(step.verb)), step.path + ".with",
                          step.path + "." + name(step.verb));
-    check_minimises(checker, config, step, tree);
   }
   for (std::size_t i = 0; i < step.fly.smooth.size(); ++i) {
     const SmootherEntry& smoother = step.fly.smooth[i];
@@ -189,6 +163,43 @@ class StepCheck {
 };
 }  // namespace
 
+std::vector<Problem> planner_problems(const Config& config, const Objective& objective) {
+  std::vector<Problem> problems;
+  const auto check = [&](const StepEntry& step, const Value& tree) {
+    if (step.verb != Verb::plan || step.plugin.empty()) {
+      return;
+    }
+    const std::string kind = kind_of_step(*config.registry, step);
+    Traits traits;
+    if (kind == "planner") {
+      try {
+        traits = config.registry->get(kind, step.plugin).planner(&step.with)->traits();
+      } catch (const Error&) {
+        return;  // its parameters are refused
+      }
+    }
+    if (const std::string why = objective_problem(objective, traits); !why.empty()) {
+      problems.push_back({place_of(tree, "plan"), step.path + ".plan",
+                          "the " + kind + " '" + step.plugin + "' " + why +
+                              "; objective: {length: {}} asks for the shortest route"});
+    }
+  };
+  for (std::size_t i = 0; i < config.steps.size(); ++i) {
+    const StepEntry& step = config.steps[i];
+    check(step, config.pipeline.steps[i]);
+    for (std::size_t k = 0; k < step.otherwise.size(); ++k) {
+      check(step.otherwise[k], step.alternatives[k]);
+    }
+    if (step.fly.replan.kind == Value::Kind::map) {
+      StepEntry planner;
+      bind(planner, &step.fly.replan, step.path + ".replan");  // its problems are reported
+      planner.path = step.path + ".replan";
+      check(planner, step.fly.replan);
+    }
+  }
+  return problems;
+}
+
 const char* kind_of_step(Registry& registry, const StepEntry& step) {
   switch (step.verb) {
     case Verb::smooth:
@@ -209,6 +220,10 @@ void check_steps(Checker& checker, Config& config) {
   StepCheck check(checker, config);
   for (std::size_t i = 0; i < config.pipeline.steps.size(); ++i) {
     check.check(i);
+  }
+  if (config.objective() != nullptr) {  // what it depends on is known once it is made
+    const auto length = plugin(*config.registry, "objective", "length").objective(nullptr, Site());
+    checker.add(planner_problems(config, *length));
   }
 }
 }  // namespace altiplan::host

@@ -145,9 +145,9 @@ std::shared_ptr<const Objective> make_objective(const Config& config, const std:
     throw ConfigError(parameters.where, key, error.what());
   }
 }
-}  // namespace
 
-std::shared_ptr<const Objective> objective_of(const Config& config, const Site& site) {
+/// The objective in force, or null.
+std::shared_ptr<const Objective> made_objective(const Config& config, const Site& site) {
   const ObjectiveEntry* entry = config.objective();
   if (entry == nullptr) {
     return nullptr;
@@ -156,6 +156,36 @@ std::shared_ptr<const Objective> objective_of(const Config& config, const Site& 
   own.random = site.random.sub("objective");
   const std::string key = config.pipeline.objective ? "objective." : "scenario.objective.";
   return make_objective(config, entry->plugin, entry->parameters, own, key + entry->plugin);
+}
+
+void expect_minimised(const Config& config, const Objective& objective) {
+  if (std::vector<Problem> problems = planner_problems(config, objective); !problems.empty()) {
+    throw ConfigError(std::move(problems));
+  }
+}
+}  // namespace
+
+std::shared_ptr<const Objective> objective_of(const Config& config, const Site& site) {
+  std::shared_ptr<const Objective> objective = made_objective(config, site);
+  if (objective != nullptr) {
+    expect_minimised(config, *objective);
+  }
+  return objective;
+}
+
+void expect_minimised(const Config& config) {
+  const World nothing;
+  Site site;
+  site.before = &nothing;
+  site.volume = {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
+  std::shared_ptr<const Objective> objective;
+  try {
+    objective = made_objective(config, site);
+  } catch (const Error&) {  // it is known with the world alone
+  }
+  if (objective != nullptr) {
+    expect_minimised(config, *objective);
+  }
 }
 
 std::shared_ptr<const Constraint> limit_of(const Config& config, const Value& parameters,

@@ -12,8 +12,12 @@
 
 namespace altiplan::host {
 
-/// The objective in force, in the world of `site`; null: length. Throws as build_layer does.
+/// The objective in force, in the world of `site`; null: length. Throws as build_layer does, and
+/// ConfigError where the planner of a step cannot minimise it.
 std::shared_ptr<const Objective> objective_of(const Config& config, const Site& site);
+
+/// The same as far as can be told without the world, which some objectives need to be made.
+void expect_minimised(const Config& config);
 
 /// The constraint `limit` of these parameters, whose key in the files is `key`. Throws likewise.
 std::shared_ptr<const Constraint> limit_of(const Config& config, const Value& parameters,

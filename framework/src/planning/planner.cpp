@@ -97,7 +97,8 @@ std::string objective_problem(const Objective& objective, const Traits& traits) 
   const Objective::Traits its = objective.traits();
   return its.waypoints ? "minimises costs of legs, added up, not one of the whole route's "
                          "waypoints: use one with the trait `whole_routes`, such as pso"
-         : its.time    ? "minimises no objective that depends on the time"
+         : its.time    ? "minimises no objective that depends on the time: use one with the "
+                         "trait `whole_routes`, such as pso"
                        : "";
 }
 
