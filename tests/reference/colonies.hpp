@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "altiplan/check.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/route.hpp"
 #include "support/support.hpp"
 
@@ -109,6 +110,49 @@ inline void expect_no_work_beyond_the_budget(const std::string& planner,
   request.budget.max_iterations = 300;
   EXPECT_EQ(counter(plan_of(planner, "ants: 20000, " + settings, request), "expanded"), 300);
   EXPECT_LE(asked, 30'000);
+}
+
+/// A metre costs ten times as much in the south as elsewhere; in the far north nothing has a cost.
+struct DearSouth final : Objective {
+  double do_cost(const Leg& leg, double, const Request&) const override {
+    const auto [south, north] = std::minmax(leg.from.y(), leg.to.y());
+    const double in_south = std::max(std::min(north, kSouth) - south, 0.0);
+    const double share = north > south ? in_south / (north - south) : double(south < kSouth);
+    return north > kVoid ? kInfinity : per_metre * leg.length() * (1 + 9 * share);
+  }
+  double do_bound(const Vec3& from, const Vec3& to, const Request&) const override {
+    return per_metre * (to - from).norm();
+  }
+  std::string do_unit() const override { return ""; }
+  static constexpr double kSouth = 100;
+  static constexpr double kVoid = 370;
+  double per_metre = 1;
+};
+
+/// The short way around the block is dear, the other one leads past places without a cost.
+inline void expect_objective_minimised(const std::string& planner, const std::string& settings) {
+  SearchProgress progress;
+  double cost = 0;
+  double without = 0;  // an objective
+  const auto dear = std::make_shared<DearSouth>();
+  const auto in_cents = std::make_shared<DearSouth>();
+  in_cents->per_metre = 128;  // a power of two: sums are the same to the last bit
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Request request = flat_world();
+    request.random = RandomStream(seed);
+    request.budget.progress = &progress;
+    const Route shortest = plan_of(planner, settings, request).route;
+    request.objective = dear;
+    const PlanResult result = plan_of(planner, settings, request);
+    ASSERT_EQ(result.status, PlanStatus::solved) << result.message;
+    EXPECT_TRUE(check(result.route, request).ok());
+    cost += cost_of(result.route, request);
+    without += cost_of(shortest, request);
+    EXPECT_EQ(progress.best, cost_of(result.route, request));
+    request.objective = in_cents;  // the unit of costs does not matter
+    EXPECT_EQ(plan_of(planner, settings, request).route, result.route);
+  }
+  EXPECT_LT(cost, 0.9 * without);  // a colony may settle for the dear way
 }
 
 inline void expect_iterations_traced(const std::string& planner, const std::string& settings) {

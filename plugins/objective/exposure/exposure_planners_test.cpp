@@ -236,7 +236,7 @@ TEST(Objectives, SmoothersNeverRaiseTheCost) {
 TEST(Objectives, PlannersThatMinimiseLengthRefuse) {
   SplitMix64 random(17);
   Request request = random_request(random, 1);
-  for (const char* planner : {"jps", "rrt", "sipp", "ant_colony", "dstar_lite"}) {
+  for (const char* planner : {"jps", "rrt", "sipp", "anya", "dstar_lite"}) {
     const PlanResult result = make_planner(planner)->plan(request);
     EXPECT_EQ(result.status, PlanStatus::invalid_problem) << planner;
     EXPECT_NE(result.message.find("minimises length alone, not an objective"), std::string::npos)

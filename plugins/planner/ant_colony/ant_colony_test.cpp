@@ -45,6 +45,8 @@ TEST(AntColony, TheTraceTellsOfEveryIteration) {
   testing::expect_iterations_traced("ant_colony", kCells);
 }
 
+TEST(AntColony, MinimisesAnObjective) { testing::expect_objective_minimised("ant_colony", kCells); }
+
 TEST(AntColony, LimitsHold) { testing::expect_limits_hold("ant_colony", kCells); }
 
 TEST(AntColony, EndsOffTheCentresOfCells) { testing::expect_ends_joined("ant_colony", kCells); }

@@ -70,9 +70,20 @@ class LegColony final : public kit::Colony {
         const kit::DirectionMask open =
             steps & lattice_.inside(here) &
             kit::free_steps(kit::blocked_around(*grid_, here), kit::CornerRule::free_box);
-        weigh_legs(lattice_.index(here), here, open);
+        weigh_legs(lattice_.index(here), here, priced(lattice_.index(here), open));
       }
     }
+  }
+
+  /// Without the legs that the objective has no cost for.
+  kit::DirectionMask priced(std::uint32_t cell, kit::DirectionMask open) const {
+    for (Direction k = 0; request_.objective && k < kNeighbours; ++k) {
+      if ((open >> direction_of(k) & 1) != 0 &&
+          cost_between(cell, neighbour(cell, k)) == kInfinity) {
+        open &= ~(kit::DirectionMask{1} << direction_of(k));
+      }
+    }
+    return open;
   }
 
   void weigh_legs(std::uint32_t cell, const Cell& here, kit::DirectionMask open) {

@@ -11,7 +11,8 @@
 //   which most ants die); an ant that sees the goal within its neighbourhood moves to it; the
 //   candidates of a cell are remembered, nearest to the goal first; pheromone is deposited every
 //   l_c along the trimmed legs (`deposit`: on every cell, or on nodes alone, is worse); `heuristic:
-//   geodesic` is ours. The paper's last part, smoothing, is a separate step: hermite.
+//   geodesic` is ours. Under an objective routes are trimmed where that costs no more. The paper's
+//   last part, smoothing, is a separate step: hermite.
 // Symbols: l_c the reach of a step and l_s the spacing of candidates in cells, C the tilt of the
 //   roulette, r and mu radius and decay of the region, tau^equ its pheromone; alpha, beta, rho, Q
 //   as in ant_colony.

@@ -142,6 +142,10 @@ TEST(ImprovedAntColony, TheTraceTellsOfEveryIteration) {
   testing::expect_iterations_traced(kName, kCells);
 }
 
+TEST(ImprovedAntColony, MinimisesAnObjective) {
+  testing::expect_objective_minimised(kName, kCells);
+}
+
 TEST(ImprovedAntColony, LimitsHold) { testing::expect_limits_hold(kName, kCells); }
 
 TEST(ImprovedAntColony, EndsOffTheCentresOfCells) { testing::expect_ends_joined(kName, kCells); }

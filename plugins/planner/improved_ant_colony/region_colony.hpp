@@ -116,7 +116,8 @@ class RegionColony final : public kit::Colony {
     for (std::size_t k = 0; k < offsets_.size(); ++k) {
       const Cell there = {here[0] + offsets_[k][0], here[1] + offsets_[k][1], 0};
       if (lattice_.spec().holds(there) &&
-          (!guarded || kit::level_line_of_sight(*grid_, here, there))) {
+          (!guarded || kit::level_line_of_sight(*grid_, here, there)) &&
+          (!request_.objective || cost_between(cell, cell + strides_[k]) < kInfinity)) {
         all.own[all.count++] = std::uint8_t(k);
       }
     }
@@ -245,7 +246,8 @@ class RegionColony final : public kit::Colony {
     const Cell there = lattice_.cell(goal_);
     if (std::abs(there[0] - here[0]) > settings_.reach ||
         std::abs(there[1] - here[1]) > settings_.reach || !sees(at, goal_) ||
-        (!cells_decide() && !keeps_rules(walker, goal_))) {
+        (!cells_decide() && !keeps_rules(walker, goal_)) ||
+        (request_.objective && cost_between(at, goal_) == kInfinity)) {
       return 0;
     }
     return (position(goal_) - position(at)).norm();
@@ -293,9 +295,19 @@ class RegionColony final : public kit::Colony {
     std::vector<std::uint32_t>& way = walker.ant->way;
     for (const std::size_t stride : strides_of_rounds_) {
       kit::trim(way, stride, [&](std::size_t from, std::size_t to) {
-        return sees(way[from], way[to]) && (cells_decide() || keeps_rules(walker, from, to));
+        return sees(way[from], way[to]) && (cells_decide() || keeps_rules(walker, from, to)) &&
+               (!request_.objective || !is_dearer(way, from, to));
       });
     }
+  }
+
+  /// True if the straight leg costs more than the legs that it replaces.
+  bool is_dearer(const std::vector<std::uint32_t>& way, std::size_t from, std::size_t to) const {
+    double legs = 0;
+    for (std::size_t n = from; n < to; ++n) {
+      legs += cost_between(way[n], way[n + 1]);
+    }
+    return costs_more(cost_between(way[from], way[to]), legs);
   }
 
   /// Along the legs, from node to node at equal spacing.

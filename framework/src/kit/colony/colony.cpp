@@ -25,7 +25,9 @@ void ColonyParams::describe(Fields& f) {
           "allows");
   f("deposit_q", deposit_q)
       .range(1e-9, 1e9)
-      .doc("Q of eq. (2): an ant deposits Q divided by the metres of its route");
+      .doc(
+          "Q of eq. (2): an ant deposits Q divided by the metres of its route, or by its cost in "
+          "metres that cost the same on the first routes");
   f("initial_pheromone", initial_pheromone).range(1e-9, 1e9).doc("initial tau everywhere");
   f("alpha", alpha).range(0, 20).doc("exponent of the pheromone in eq. (1)");
   f("beta", beta).range(0, 20).doc("exponent of the heuristic in eq. (1)");
@@ -97,7 +99,8 @@ std::optional<PlanResult> Colony::without_ants() {
   const Vec3& goal = request_.goal.position;
   const bool straight =
       (goal - start).norm() <= request_.limits.max_route_length + kLengthTolerance &&
-      leg_ok(request_.before_start(), start, goal, request_);
+      leg_ok(request_.before_start(), start, goal, request_) &&
+      std::isfinite(cost_of(Leg::straight(start, goal), request_));
   result.status = straight ? PlanStatus::solved : PlanStatus::no_route;
   result.message = straight ? "start and goal share a cell: the straight leg"
                             : "no route: start and goal share a cell, and the straight leg "
@@ -162,10 +165,19 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
     }
     if (walker.ant->end == Ant::End::arrived) {
       bring_home(walker);
+      price(*walker.ant);
     } else if (walker.ant->end == Ant::End::stopped && walker.ant->steps < max_steps_) {
       cancelled_ = cancelled_ || walker.watch.cancelled();
       stopped_ = true;
     }
+  }
+}
+
+/// By the objective; an ant whose route has no cost is lost.
+void Colony::price(Ant& ant) const {
+  ant.cost = request_.objective ? cost_of(Route(route_of(ant)), request_) : ant.length;
+  if (ant.cost == kInfinity) {
+    ant.end = Ant::End::stuck;
   }
 }
 
@@ -174,6 +186,7 @@ void Colony::send_out(Walker& walker, std::size_t iteration) {
 bool Colony::collect() {
   alive_ = stuck_ = too_long_ = 0;
   double sum = 0;
+  double metres = 0;
   bool complete = true;
   for (Ant& ant : ants_) {
     const std::uint64_t left = request_.budget.max_iterations - expanded_;
@@ -187,15 +200,19 @@ bool Colony::collect() {
     too_long_ += ant.end == Ant::End::too_long ? 1 : 0;
     if (ant.end == Ant::End::arrived) {
       ++alive_;
-      sum += ant.length;
-      if (best_.way.empty() || ant.length < best_.length) {
+      sum += ant.cost;
+      metres += ant.length;
+      if (best_.way.empty() || ant.cost < best_.cost) {
         best_ = ant;
-        request_.budget.show_best(ant.length);
+        request_.budget.show_best(ant.cost);
       }
     }
   }
-  past_.push_back({alive_ > 0 ? sum / double(alive_) : kInfinity,
-                   best_.way.empty() ? kInfinity : best_.length});
+  past_.push_back(
+      {alive_ > 0 ? sum / double(alive_) : kInfinity, best_.way.empty() ? kInfinity : best_.cost});
+  if (metres_per_cost_ == 0 && sum > 0) {
+    metres_per_cost_ = metres / sum;  // exactly 1 where the cost is the length
+  }
   return complete && !stopped_;
 }
 
@@ -229,7 +246,11 @@ void Colony::lay_all() {
   evaporate();
   for (const Ant& ant : ants_) {
     if (ant.end == Ant::End::arrived) {
-      lay(ant, params_.deposit_q / (params_.initial_pheromone * ant.length));
+      // A route that costs next to nothing counts as one a thousandth as long.
+      const double metres = request_.objective
+                                ? std::max(ant.cost * metres_per_cost_, ant.length / 1000)
+                                : ant.length;
+      lay(ant, params_.deposit_q / (params_.initial_pheromone * metres));
     }
   }
   settle();
@@ -307,7 +328,7 @@ PlanResult Colony::result() const {
                      {"stuck", std::int64_t(stuck_)},
                      {"too_long", std::int64_t(too_long_)}};
   if (found) {
-    if (alive_ > 0) {
+    if (alive_ > 0 && !request_.objective) {
       result.counters.push_back({"mean_length_m", std::llround(past_.back().mean)});
     }
     const auto add_first = [&](const std::string& name, const auto& settled) {
@@ -316,8 +337,8 @@ PlanResult Colony::result() const {
         result.counters.push_back({name, first - past_.begin() + 1});
       }
     };
-    add_first("best_settled_at", [&](const Iteration& i) { return i.best <= 1.01 * best_.length; });
-    add_first("mean_settled_at", [&](const Iteration& i) { return i.mean <= 1.03 * best_.length; });
+    add_first("best_settled_at", [&](const Iteration& i) { return i.best <= 1.01 * best_.cost; });
+    add_first("mean_settled_at", [&](const Iteration& i) { return i.mean <= 1.03 * best_.cost; });
   }
   result.counters.push_back({"lattice_cells", std::int64_t(lattice_.size())});
   return result;
@@ -357,6 +378,7 @@ Traits ColonyPlanner::do_traits() const {
   Traits traits;
   traits.anytime = true;
   traits.spatial = false;
+  traits.objectives = true;
   return traits;
 }
 }  // namespace altiplan::kit

@@ -13,6 +13,7 @@
 #include "altiplan/kit/lattice/lattice.hpp"
 #include "altiplan/kit/lattice/lattice_params.hpp"
 #include "altiplan/kit/lattice/move_rules.hpp"
+#include "altiplan/objective.hpp"
 #include "altiplan/planner.hpp"
 
 /// \file Common parts of ant colonies on the cells of a level. M. Dorigo, V. Maniezzo, A. Colorni:
@@ -95,6 +96,7 @@ class ALTIPLAN_API Colony {
     std::vector<std::uint32_t> way;     ///< cells, from the start's on
     std::vector<std::uint32_t> places;  ///< where pheromone is deposited, from `bring_home`
     double length = 0;                  ///< length of the route in metres, ends included
+    double cost = 0;                    ///< by the request's objective; of who has arrived
     End end = End::stopped;
     std::uint64_t steps = 0;
   };
@@ -140,6 +142,10 @@ class ALTIPLAN_API Colony {
   Vec3 position(std::uint32_t cell) const { return lattice_.position(lattice_.cell(cell)); }
   std::uint32_t columns() const { return std::uint32_t(lattice_.spec().counts[0]); }
   double length_of(const std::vector<std::uint32_t>& way) const;
+  /// Cost of the straight leg between two cells, by the request's objective.
+  double cost_between(std::uint32_t from, std::uint32_t to) const {
+    return cost_of(Leg::straight(position(from), position(to)), request_);
+  }
 
   const Request& request_;
   const ColonyParams& params_;
@@ -150,8 +156,8 @@ class ALTIPLAN_API Colony {
 
  private:
   struct Iteration {
-    double mean = 0;
-    double best = kInfinity;  ///< so far
+    double mean = 0;          ///< cost of those that arrived
+    double best = kInfinity;  ///< cost so far
   };
   void join_ends();
   std::optional<PlanResult> without_ants();
@@ -161,6 +167,7 @@ class ALTIPLAN_API Colony {
   void note_iteration();
   void lay_all();
   bool ends_well(Walker& walker) const;
+  void price(Ant& ant) const;
   std::optional<Approach> before(const Ant& ant, std::size_t place) const;
   Polyline route_of(const Ant& ant) const;
   PlanResult result() const;
@@ -181,6 +188,7 @@ class ALTIPLAN_API Colony {
   /// Refused moves of the first ant only: the assignment of ants to walkers is not deterministic.
   std::string first_refused_;
   std::vector<Iteration> past_;
+  double metres_per_cost_ = 0;  ///< of the first ants that arrived together; 0: none has
   Ant best_;
   std::size_t alive_ = 0;  ///< in the last iteration
   std::size_t stuck_ = 0;
