@@ -31,10 +31,18 @@ steps:
   - plan: astar
     with: {cell_m: [100, 100, 50]}
 """
-# Section 4.1 of GRIB2, templates 4.0: momentum, u or v, at 10 m above the ground.
-GRIB = ["-of", "GRIB", "-co", "DISCIPLINE=0", "-co", "PDS_PDTN=0"] + [
-    option for band, parameter in ((1, 2), (2, 3)) for option in
-    ("-co", f"BAND_{band}_PDS_TEMPLATE_NUMBERS=2 {parameter} 2 0 96 0 0 0 1 0 0 0 0 103 0 0 0 0 10 255 0 0 0 0 0")]
+
+
+def grib(*levels):
+    """Of bands u, v by turns: section 4.1 of GRIB2, templates 4.0, momentum at pairs of an hour of the forecast of
+    1970-01-01 and a height above the ground."""
+    return ["-of", "GRIB", "-co", "DISCIPLINE=0", "-co", "PDS_PDTN=0"] + [
+        option for n, (hour, height) in enumerate(levels) for band, parameter in ((2 * n + 1, 2), (2 * n + 2, 3))
+        for option in ("-co", f"BAND_{band}_PDS_TEMPLATE_NUMBERS=2 {parameter} 2 0 96 0 0 0 1 0 0 0 {hour} 103 0 0 0 0 "
+                              f"{height} 255 0 0 0 0 0")]
+
+
+GRIB = grib((0, 10))
 
 
 @unittest.skipUnless(shutil.which("gdal_translate"), "GDAL's programs are not installed")
@@ -48,13 +56,14 @@ class WindGrid(unittest.TestCase):
     def gdal(self, *arguments):
         subprocess.run(arguments, cwd=self.folder, check=True, capture_output=True, timeout=120)
 
-    def grid(self, name, east, north, corner=(0, 0), cell=500, options=(), system=()):
+    def grid(self, name, *bands, corner=(0, 0), cell=500, options=(), system=()):
         """A file of these rows from the north."""
-        for band, rows in (("u", east), ("v", north)):
-            (self.folder / f"{band}.asc").write_text(
+        files = [f"{n}.asc" for n in range(len(bands))]
+        for file, rows in zip(files, bands):
+            (self.folder / file).write_text(
                 f"ncols {len(rows[0])}\nnrows {len(rows)}\nxllcorner {corner[0]}\nyllcorner {corner[1]}\n"
                 f"cellsize {cell}\n" + "\n".join(" ".join(map(str, row)) for row in rows) + "\n")
-        self.gdal("gdalbuildvrt", "-overwrite", "-q", *system, "-separate", "w.vrt", "u.asc", "v.asc")
+        self.gdal("gdalbuildvrt", "-overwrite", "-q", *system, "-separate", "w.vrt", *files)
         self.gdal("gdal_translate", "-q", *options, "w.vrt", name)
 
     def altiplan(self, *arguments, code=0):
@@ -97,7 +106,7 @@ class WindGrid(unittest.TestCase):
     def test_grib(self):
         """One cell of it about the origin is wind from one direction."""
         east, north = [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]], [[0] * 4, [0, -6, 0, 0], [0] * 4]
-        self.grid("w.grb2", east, north, (8, 47), 0.25, GRIB, ("-a_srs", "EPSG:4326"))
+        self.grid("w.grb2", east, north, corner=(8, 47), cell=0.25, options=GRIB, system=("-a_srs", "EPSG:4326"))
         frame = "frame: {crs: local, origin_lonlat: [8.3, 47.3]}"
         ends = (50, 700, 100), (1950, 900, 100)
         self.scenario("grid: w.grb2", frame=frame)
@@ -106,6 +115,43 @@ class WindGrid(unittest.TestCase):
         self.assertAlmostEqual(of_grid, self.cost(*ends), delta=0.02)  # east turns by 0.02 degrees
         self.scenario("grid: w.grb2, bands: [2, 1]", frame=frame)
         self.assertIn("band 2 is VGRD, expected UGRD", self.altiplan("run", "p.yaml", code=3))
+
+    def test_layers_of_grids(self):
+        """A leg is timed by the cells of the layer that it is in; a layer without a grid may be among them."""
+        none = [[0] * 4] * 3
+        self.grid("low.tif", [[5, -5, 0, 10]] * 3, none)
+        self.grid("high.tif", none, none, [[-5, 0, 5, 2]] * 3, none)
+        self.scenario("layers: [{above_m: 0, grid: low.tif}, {above_m: 80, from_deg: 90, speed_mps: 4}, "
+                      "{above_m: 120, grid: high.tif, bands: [3, 4]}]")
+        for height, winds in ((50, (5, -5, 0, 10)), (100, (-4, -4, -4, -4)), (150, (-5, 0, 5, 2))):
+            self.assertAlmostEqual(self.cost((50, 750, height), (1950, 750, height)),
+                                   sum(run / (20 + wind) for run, wind in zip((450, 500, 500, 450), winds)), 6)
+        # Up by 140 m in 1900: through the borders of layers at x = 50 + 1900 (50 / 140) and 50 + 1900 (90 / 140).
+        first, second = 50 + 1900 * 50 / 140, 50 + 1900 * 90 / 140
+        self.assertAlmostEqual(
+            self.cost((50, 750, 30), (1950, 750, 170)),
+            450 / 25 + (first - 500) / 15 + (second - first) / 16 + (1500 - second) / 25 + 450 / 22, 6)
+
+    def test_grib_of_hours_and_heights(self):
+        rows = [[[n] * 4] * 3 for n in range(8)]
+        self.grid("w.grb2", *rows, corner=(8, 47), cell=0.25, options=grib((0, 10), (0, 80), (6, 10), (6, 80)),
+                  system=("-a_srs", "EPSG:4326"))
+        frame = "frame: {crs: local, origin_lonlat: [8.3, 47.3]}"
+
+        def said(wind, code=3, more=""):
+            self.scenario(wind, frame=frame + more)
+            return self.altiplan("run", "p.yaml", code=code)
+        self.assertIn("has 8 bands: give bands, the numbers of those toward east and north of one height and hour",
+                      said("grid: w.grb2"))
+        self.assertRegex(said("layers: [{above_m: 0, grid: w.grb2, bands: [1, 4]}]"),
+                         r"s\.yaml:\d+:\d+: (scenario\.)?wind\.layers\.0\.grid: .*two heights, 10-HTGL and 80-HTGL")
+        self.assertIn("two hours, 0 and 21600", said("grid: w.grb2, bands: [1, 6]"))
+        layers = "layers: [{above_m: 0, grid: w.grb2, bands: [1, 2]}, {above_m: 80, grid: w.grb2, bands: [7, 8]}]"
+        self.assertNotIn("other hours", said(layers, code=0))
+        later = said(layers, 0, "\nstart_time: 1970-01-01T05:00:00Z")
+        self.assertIn("wind.layers.0.grid: the wind is of 1970-01-01T00:00:00Z, the flight starts at "
+                      "1970-01-01T05:00:00Z: winds of other hours are not modelled", later)
+        self.assertNotIn("wind.layers.1.grid", later)
 
     def test_routes_take_the_wind_behind(self):
         self.grid("w.tif", [[8] * 4, [-8] * 4, [-8] * 4], [[0] * 4] * 3)
@@ -128,7 +174,8 @@ class WindGrid(unittest.TestCase):
         self.assertIn("has no wind of up to 150 m/s", refusal("grid: fast.tif"))
         self.grid("utm.tif", [[0] * 4] * 3, [[0] * 4] * 3, system=("-a_srs", "EPSG:32632"))
         self.assertIn("is not in longitudes and latitudes", refusal("grid: utm.tif"))
-        self.grid("lonlat.tif", [[0] * 4] * 3, [[0] * 4] * 3, (8, 47), 0.25, system=("-a_srs", "EPSG:4326"))
+        self.grid("lonlat.tif", [[0] * 4] * 3, [[0] * 4] * 3, corner=(8, 47), cell=0.25,
+                  system=("-a_srs", "EPSG:4326"))
         self.assertIn("no place on the Earth", refusal("grid: lonlat.tif"))
         self.gdal("gdal_translate", "-q", "-b", "1", "lonlat.tif", "one.tif")
         self.assertIn("has one band, expected two", refusal("grid: one.tif"))
@@ -150,6 +197,10 @@ class WindGrid(unittest.TestCase):
         self.assertIn("expected from_deg and speed_mps, or layers, or grid",
                       refusal("grid: small.tif, from_deg: 3, speed_mps: 3"))
         self.assertIn("expected bands with grid", refusal("bands: [1, 2]"))
+        self.assertIn("wind.layers: expected at least 1", refusal("grid: small.tif, layers: []"))
+        self.assertIn("expected from_deg and speed_mps, or grid", refusal("layers: [{above_m: 0}]"))
+        self.assertIn("expected from_deg and speed_mps, or grid",
+                      refusal("layers: [{above_m: 0, grid: small.tif, from_deg: 3, speed_mps: 3}]"))
 
 
 if __name__ == "__main__":

@@ -145,47 +145,41 @@ void WingEntry::describe(Fields& f) {
       .doc("maximum rate of the bank angle in flight");
 }
 
-namespace {
-void describe_from(Fields& f, double& from_deg, double& speed_mps) {
+void WindKindEntry::describe(Fields& f) {
   f("from_deg", from_deg)
       .unit("deg")
       .range(0, 360)
-      .required()
       .doc("direction from which the wind blows, clockwise from north");
-  f("speed_mps", speed_mps).unit("m/s").range(0, 100).required().doc("wind speed");
+  f("speed_mps", speed_mps).unit("m/s").range(0, 100).doc("wind speed");
+  f("grid", grid)
+      .doc(
+          "alternatively: wind by cells, of a GRIB file or GeoTIFF: metres a second toward east "
+          "and "
+          "north");
+  f("bands", bands)
+      .at_least(1)
+      .doc(
+          "numbers of the file's bands toward east and north; default: those that GRIB names so, "
+          "or the only two");
+  f.check(bands.empty() || (bands.size() == 2 && !grid.text.empty()),
+          "expected bands with grid, as two numbers");
+  f.check(from_deg.has_value() == speed_mps.has_value(), "expected from_deg with speed_mps");
 }
-}  // namespace
 
 void WindLayerEntry::describe(Fields& f) {
   f("above_m", above_m)
       .unit("m")
       .required()
       .doc("lower border of the layer, above sea level; it reaches up to the next one's");
-  describe_from(f, from_deg, speed_mps);
+  WindKindEntry::describe(f);
+  f.check(from_deg.has_value() != !grid.text.empty(), "expected from_deg and speed_mps, or grid");
 }
 
 void WindEntry::describe(Fields& f) {
-  f("from_deg", from_deg)
-      .unit("deg")
-      .range(0, 360)
-      .doc("direction from which the wind blows, clockwise from north");
-  f("speed_mps", speed_mps).unit("m/s").range(0, 100).doc("wind speed");
-  f("layers", layers).doc("alternatively: wind by layers of height, from the lowest");
-  f("grid", grid)
-      .doc(
-          "alternatively: wind by cells, at all heights, of a GRIB file or GeoTIFF: metres a "
-          "second "
-          "toward east and north");
-  f("bands", bands)
-      .at_least(1)
-      .doc(
-          "numbers of the file's bands toward east and north; default: those that GRIB names so, "
-          "or the only two");
+  WindKindEntry::describe(f);
+  f("layers", layers).min_items(1).doc("alternatively: wind by layers of height, from the lowest");
   f.check(int(from_deg.has_value()) + int(!layers.empty()) + int(!grid.text.empty()) <= 1,
           "expected from_deg and speed_mps, or layers, or grid");
-  f.check(bands.empty() || (bands.size() == 2 && !grid.text.empty()),
-          "expected bands with grid, as two numbers");
-  f.check(from_deg.has_value() == speed_mps.has_value(), "expected from_deg with speed_mps");
   for (std::size_t i = 1; i < layers.size(); ++i) {
     f.check(layers[i - 1].above_m < layers[i].above_m,
             "expected layers in ascending order of above_m");

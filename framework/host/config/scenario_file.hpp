@@ -121,21 +121,24 @@ struct WingEntry {
   void describe(Fields& f);
 };
 
-/// Wind within a layer of height.
-struct WindLayerEntry {
-  double above_m = 0;
-  double from_deg = 0;
-  double speed_mps = 0;
+/// One wind, or one by the cells of a grid.
+struct WindKindEntry {
+  std::optional<double> from_deg;
+  std::optional<double> speed_mps;
+  Path grid;
+  std::vector<int> bands;  ///< east, north
   void describe(Fields& f);
 };
 
-/// `{from_deg, speed_mps}` at every height, or `{layers: […]}`, or `{grid: FILE}`.
-struct WindEntry {
-  std::optional<double> from_deg;
-  std::optional<double> speed_mps;
+/// Wind within a layer of height.
+struct WindLayerEntry : WindKindEntry {
+  double above_m = 0;
+  void describe(Fields& f);
+};
+
+/// At every height, or `{layers: […]}`.
+struct WindEntry : WindKindEntry {
   std::vector<WindLayerEntry> layers;
-  Path grid;
-  std::vector<int> bands;  ///< east, north
   bool blows() const { return speed_mps.value_or(0) > 0 || !layers.empty() || !grid.text.empty(); }
   void describe(Fields& f);
 };

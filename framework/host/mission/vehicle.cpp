@@ -218,18 +218,4 @@ Vehicle vehicle_of(const VehicleEntry& entry, const Value* where, Registry& regi
   }
   return vehicle;
 }
-
-Wind wind_of(const WindEntry& entry) {
-  const auto velocity = [](double from_deg, double speed_mps) -> Vec3 {
-    return -speed_mps * unit_heading(radians(90 - from_deg));
-  };
-  Wind wind;
-  if (entry.from_deg && *entry.speed_mps > 0) {
-    wind.layers.push_back({-kInfinity, velocity(*entry.from_deg, *entry.speed_mps)});
-  }
-  for (const auto& [above_m, from_deg, speed_mps] : entry.layers) {
-    wind.layers.push_back({above_m, velocity(from_deg, speed_mps)});
-  }
-  return wind;
-}
 }  // namespace altiplan::host

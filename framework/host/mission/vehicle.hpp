@@ -9,5 +9,4 @@ namespace altiplan::host {
 /// `where` locates the key `vehicle`; the registry's plugin `mesh` reads meshes of a body. Throws
 /// ConfigError.
 Vehicle vehicle_of(const VehicleEntry& entry, const Value* where, Registry& registry);
-Wind wind_of(const WindEntry& entry);
 }  // namespace altiplan::host

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -63,6 +64,7 @@ class File {
 
   bool is_geographic() const { return is_geographic_; }
   const Place& step() const { return step_; }
+  std::optional<double> valid_s() const { return valid_s_; }
   /// South-west corner of the cell that holds a place.
   Place corner(const Place& place) const {
     Place corner{};
@@ -136,10 +138,25 @@ class File {
     }
   }
 
-  static std::string element(const Json& band) {
+  /// "ELEMENT", "SHORT_NAME" (the height) or "VALID_TIME" of a band of GRIB; "" of others.
+  static std::string grib(const Json& band, const std::string& key) {
     return band.value("metadata", Json::object())
         .value("", Json::object())
-        .value("GRIB_ELEMENT", "");
+        .value("GRIB_" + key, "");
+  }
+  static std::string element(const Json& band) { return grib(band, "ELEMENT"); }
+
+  /// Throws Error unless both bands are of one height and one hour, which is kept.
+  void expect_together(const Json& east, const Json& north) {
+    for (const char* key : {"SHORT_NAME", "VALID_TIME"}) {
+      if (grib(east, key) != grib(north, key)) {
+        refuse("the bands are of two " + std::string(key[0] == 'S' ? "heights" : "hours") + ", " +
+               grib(east, key) + " and " + grib(north, key));
+      }
+    }
+    if (const std::string valid = grib(east, "VALID_TIME"); !valid.empty()) {
+      valid_s_ = std::strtod(valid.c_str(), nullptr);
+    }
   }
 
   std::vector<int> bands_of(const Json& bands) const {
@@ -158,8 +175,8 @@ class File {
       refuse(bands.size() < 2
                  ? "has one band, expected two: winds toward east and north"
                  : "has " + std::to_string(bands.size()) +
-                       " bands: give bands, the numbers of those toward east and north (gdalinfo "
-                       "lists them)");
+                       " bands: give bands, the numbers of those toward east and north of one "
+                       "height and hour (gdalinfo lists them)");
     }
     return found;
   }
@@ -183,6 +200,7 @@ class File {
       }
       options.insert(options.end(), {"-b", std::to_string(numbers[n])});
     }
+    expect_together(bands.at(std::size_t(numbers[0]) - 1), bands.at(std::size_t(numbers[1]) - 1));
     gdal("gdal_translate", options, gdal_.in_folder("wind.bin"));
     const std::string bytes = formats::read_file(gdal_.in_folder("wind.bin"));
     const std::size_t cells = std::size_t(counts_[0]) * std::size_t(counts_[1]);
@@ -206,6 +224,7 @@ class File {
   Place step_{};
   Place south_west_{};
   bool is_geographic_ = false;
+  std::optional<double> valid_s_;
   std::array<std::vector<float>, 2> values_;  ///< rows from the north
 };
 
@@ -244,9 +263,8 @@ class Places {
 };
 }  // namespace
 
-std::shared_ptr<const WindGrid> read_wind_grid(const std::string& name,
-                                               const std::vector<int>& bands, const Frame& frame,
-                                               const Box& volume) {
+WindFile read_wind_grid(const std::string& name, const std::vector<int>& bands, const Frame& frame,
+                        const Box& volume) {
   const File file(name, bands);
   const Places places(file, frame);
   const Vec3 middle = (volume.min + volume.max) / 2;
@@ -282,6 +300,7 @@ std::shared_ptr<const WindGrid> read_wind_grid(const std::string& name,
       velocities.push_back(places.turned(file.at(at), at));
     }
   }
-  return std::make_shared<WindGrid>(south_west, step, counts, std::move(velocities));
+  return {std::make_shared<WindGrid>(south_west, step, counts, std::move(velocities)),
+          file.valid_s()};
 }
 }  // namespace altiplan::host
