@@ -31,8 +31,7 @@ class GoalFlood {
         return;
       }
       const Cell c = tiles_.cell(number);
-      // A step is free wherever its reverse is.
-      for (kit::DirectionMask left = rules_.places_free(c, unseen(c)); left != 0;
+      for (kit::DirectionMask left = rules_.places_free(c, unseen(c), true); left != 0;
            left &= left - 1) {
         const Cell o = kit::offset(std::countr_zero(left));
         see({c[0] + o[0], c[1] + o[1], c[2] + o[2]});
@@ -64,7 +63,7 @@ class GoalFlood {
   }
   kit::DirectionMask unseen(const Cell& c) {
     kit::DirectionMask wanted = 0;
-    for (kit::DirectionMask left = rules_.out_of(c); left != 0; left &= left - 1) {
+    for (kit::DirectionMask left = kit::reversed(rules_.into(c)); left != 0; left &= left - 1) {
       const int d = std::countr_zero(left);
       const Cell o = kit::offset(d);
       const std::uint32_t number = tiles_.number({c[0] + o[0], c[1] + o[1], c[2] + o[2]});

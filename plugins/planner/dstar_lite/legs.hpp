@@ -34,7 +34,9 @@ class Legs {
   /// Adopts the request's world; cached legs within a box must be invalidated separately.
   void renew() {
     rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);
-    steps_ = rules_->steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
+    // In wind a step and its reverse may differ: both are to pass.
+    steps_ = rules_->steps() & kit::reversed(rules_->steps()) &
+             (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
   }
   void forget(std::uint32_t index) {
     if (judges_ && memory_.judged[index] != 0) {
@@ -76,8 +78,7 @@ class Legs {
     if (known != 0) {
       return known & (kJudged - 1);
     }
-    // A leg keeps off obstacles and the ground in both directions.
-    kit::DirectionMask free = rules_->places_free(c, rules_->out_of(c));
+    kit::DirectionMask free = rules_->places_free(c, steps_ & rules_->out_of(c), true);
     if (problem_.request.judges_pairs()) {
       const Vec3 here = lattice_.position(c);
       for (kit::DirectionMask open = free; open != 0; open &= open - 1) {

@@ -234,7 +234,7 @@ void HomeField::search() {
       wanted |= (lanes & 1) << column | (lanes & 2) << (column + 8) | (lanes & 4) << (column + 16);
     }
     if (wanted != 0 && !rules.all_free_around(c)) {
-      wanted = rules.places_free(c, wanted);  // free wherever its reverse is
+      wanted = rules.places_free(c, wanted, true);
     }
     for (; wanted != 0; wanted &= wanted - 1) {
       const int d = std::countr_zero(wanted);

@@ -97,7 +97,7 @@ std::string MoveRules::lower_cells(int ruled_out) const {
   for (int d = 0; d < kDirections; ++d) {
     vertical += (lattice_.steps() >> d & 1) != 0 && !has_heading(lattice_.step(d));
   }
-  if (ruled_out <= vertical) {
+  if (ruled_out <= vertical || in_wind_) {
     return "";
   }
   const Vec3& cell = lattice_.spec().cell;

@@ -30,9 +30,37 @@ Told by_cosine(double dot, double lengths, double limit_cosine) {
 
 }  // namespace
 
+namespace {
+bool is_everywhere(const Wind& wind) {
+  return wind.layers.size() == 1 && wind.layers.front().above_m == -kInfinity &&
+         !wind.layers.front().grid;
+}
+
+/// True if the judge may refuse a leg for the wind: for its climb through the air, or as one whose
+/// course cannot be held.
+bool wind_may_refuse(const Request& request) {
+  return !request.wind.is_calm() &&
+         (request.limits.max_slope() < kPi / 2 || request.wind.max_speed() >= request.air_speed());
+}
+
+/// With that alone to judge.
+Request wind_alone(const Request& request) {
+  Request alone;
+  alone.world = std::make_shared<const World>();
+  alone.vehicle = request.vehicle;
+  alone.vehicle.body = nullptr;
+  alone.wind = request.wind;
+  alone.limits.max_climb = request.limits.max_climb;
+  alone.limits.max_sink = request.limits.max_sink;
+  alone.volume = {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
+  return alone;
+}
+}  // namespace
+
 bool MoveRules::cells_decide(const Request& request) {
   return !GroundRules(request, 0, false).exist() && !request.judges_pairs() &&
-         !request.limits.turns() && request.limits.max_route_length == kInfinity;
+         !(wind_may_refuse(request) && !is_everywhere(request.wind)) && !request.limits.turns() &&
+         request.limits.max_route_length == kInfinity;
 }
 
 namespace {
@@ -65,6 +93,9 @@ std::string beyond_cells(const Request& request) {
   }
   if (limits.max_route_length < kInfinity) {
     return "a limit on the route's length";
+  }
+  if (request.wind.max_speed() >= request.air_speed()) {
+    return "a wind as fast as the vehicle";
   }
   if (request.world->has_ground()) {
     return "the ground of a layer";
@@ -122,6 +153,10 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       constraints_.push_back(named);
     }
   }
+  if (wind_may_refuse(request)) {
+    in_wind_ = wind_alone(request);
+    wind_varies_ = !is_everywhere(request.wind);
+  }
   steps_ = directions_kept();
   headings_last_ = request.headings_last();
   find_turns();
@@ -164,6 +199,11 @@ std::optional<Approach> MoveRules::approach(int step, const Vec3& here, bool at_
   return Approach(from, onward(first, request_.start.position).heading_at(here));
 }
 
+/// True if the climb of a leg, in wind that through the air and its course, is kept.
+bool MoveRules::keeps_climb(const Vec3& a, const Vec3& b) const {
+  return in_wind_ ? leg_ok(std::nullopt, a, b, *in_wind_) : climb_kept(b - a, request_.limits);
+}
+
 DirectionMask MoveRules::directions_kept() {
   const Limits& limits = request_.limits;
   DirectionMask kept = 0;
@@ -173,11 +213,11 @@ DirectionMask MoveRules::directions_kept() {
     if ((lattice_.steps() >> d & 1) == 0) {
       continue;
     }
-    const bool keeps_climb = climb_kept(lattice_.step(d), limits);
+    const bool is_climb_kept = wind_varies_ || keeps_climb(Vec3::Zero(), lattice_.step(d));
     const bool keeps_length = length_kept(lattice_.step_length(d), limits);
-    climb += !keeps_climb;
+    climb += !is_climb_kept;
     leg += !keeps_length;
-    kept |= DirectionMask(keeps_climb && keeps_length) << d;
+    kept |= DirectionMask(is_climb_kept && keeps_length) << d;
   }
   const auto sentence = [&](const char* rule, int count) {
     return std::string(steps_refused_by_.empty() ? "" : ", ") + rule + " rules out " +
@@ -234,7 +274,7 @@ bool MoveRules::keeps_off(const World& layers, const Vec3& a, const Vec3& b) {
   return layer == nullptr;
 }
 
-DirectionMask MoveRules::places_free(const Cell& c, DirectionMask wanted) {
+DirectionMask MoveRules::places_free(const Cell& c, DirectionMask wanted, bool inward) {
   moves_checked_ += __builtin_popcount(wanted);
   if (ground_steps_) {
     wanted = ground_steps_->permitted(c, wanted);
@@ -246,6 +286,15 @@ DirectionMask MoveRules::places_free(const Cell& c, DirectionMask wanted) {
       refused_layer_ = clearance_steps_->layer();
     }
     wanted = kept;
+  }
+  for (DirectionMask left = wind_varies_ ? wanted : 0; left != 0; left &= left - 1) {
+    const int d = __builtin_ctz(left);
+    const Vec3 here = lattice_.position(c);
+    const Vec3 there = here + lattice_.step(d);
+    if (!(inward ? keeps_climb(there, here) : keeps_climb(here, there))) {
+      ++refused_[by_climb];
+      wanted &= ~(DirectionMask{1} << d);
+    }
   }
   return wanted;
 }
@@ -295,7 +344,12 @@ bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& 
     return false;
   }
   const Vec3 leg = b - a;
-  if (limits.max_slope() < kPi / 2) {
+  if (in_wind_) {
+    if (!keeps_climb(a, b)) {
+      ++refused_[by_climb];
+      return false;
+    }
+  } else if (limits.max_slope() < kPi / 2) {
     const Told told = by_cosine(leg.head<2>().norm(), length, cosines_.climb);
     if (told == Told::broken || (told == Told::nothing && !climb_kept(leg, limits))) {
       ++refused_[by_climb];

@@ -32,7 +32,7 @@ LegRules::LegRules(const Request& request)
     const Limits& limits = request.limits;
     cells_alone_ = !looks_back_ && limits.altitude.empty() && !limits.min_ground_clearance &&
                    limits.min_leg <= 0 && limits.max_leg == kInfinity &&
-                   limits.max_slope() >= kPi / 2 && !request.level_m;
+                   limits.max_slope() >= kPi / 2 && request.wind.is_calm() && !request.level_m;
   } else {
     rest_.limits.min_leg = 0;
     rest_.constraints.clear();

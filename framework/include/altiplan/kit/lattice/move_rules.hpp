@@ -59,17 +59,10 @@ class ALTIPLAN_API MoveRules {
     return open & kept;
   }
   /// Those that pass them whatever step led to c.
-  DirectionMask out_of(const Cell& c) {
-    DirectionMask open = steps_ & lattice_.inside(c);
-    if (grid_ != nullptr) {
-      const DirectionMask free = free_steps(blocked_around(*grid_, c), corner_);
-      refused_[by_cells] += __builtin_popcount(open & ~free);
-      open &= free;
-    }
-    return open;
-  }
-  /// Directions of steps into c that pass them: a reversed step passes whatever the step passes.
-  DirectionMask into(const Cell& c) { return reversed(out_of(c)); }
+  DirectionMask out_of(const Cell& c) { return beside(c, steps_); }
+  /// Directions of steps into c that pass them: a reversed step passes whatever the step passes,
+  /// but in wind.
+  DirectionMask into(const Cell& c) { return reversed(beside(c, reversed(steps_))); }
   /// Steps that may follow the step `in` by the turn limits, and steps that `out` may follow.
   StepMask after(int in) const { return after_[std::size_t(in)]; }
   StepMask before(int out) const { return before_[std::size_t(out)]; }
@@ -94,13 +87,13 @@ class ALTIPLAN_API MoveRules {
     refused_[by_turn] += __builtin_popcount(directions_of(left) & ~directions_of(kept));
   }
 
-  /// Directions among `wanted` in which the step out of c satisfies the constraints that depend on
-  /// the position alone.
-  DirectionMask places_free(const Cell& c, DirectionMask wanted);
+  /// Directions among `wanted` in which the step out of c, or `inward` the step from there into c,
+  /// satisfies the constraints that depend on the position alone.
+  DirectionMask places_free(const Cell& c, DirectionMask wanted, bool inward = false);
   bool place_free(const Cell& c, int d) { return places_free(c, DirectionMask{1} << d) != 0; }
   /// True if every step between two cells of the 3 x 3 x 3 around c is known to satisfy them.
   bool all_free_around(const Cell& c) {
-    return (!ground_steps_ || ground_steps_->permits_all_around(c)) &&
+    return !wind_varies_ && (!ground_steps_ || ground_steps_->permits_all_around(c)) &&
            (!clearance_steps_ || clearance_steps_->permits_all_around(c));
   }
   /// True if the constraints, and the vehicle's body, admit the leg after its approach.
@@ -177,6 +170,17 @@ class ALTIPLAN_API MoveRules {
     by_link,
     rule_count
   };
+  /// Directions among `wanted` to cells of the lattice, by moves by cells with a free way there.
+  DirectionMask beside(const Cell& c, DirectionMask wanted) {
+    DirectionMask open = wanted & lattice_.inside(c);
+    if (grid_ != nullptr) {
+      const DirectionMask free = free_steps(blocked_around(*grid_, c), corner_);
+      refused_[by_cells] += __builtin_popcount(open & ~free);
+      open &= free;
+    }
+    return open;
+  }
+  bool keeps_climb(const Vec3& a, const Vec3& b) const;
   DirectionMask directions_kept();
   /// The constraint that refused the last leg that is no step.
   std::string link_refused_by() const;
@@ -215,6 +219,9 @@ class ALTIPLAN_API MoveRules {
   std::optional<GroundSteps> ground_steps_;        ///< where there is ground
   std::optional<ClearanceSteps> clearance_steps_;  ///< where the world is asked for obstacles
   std::optional<ClearanceSteps> wide_steps_;       ///< the same for a body in any attitude
+  /// With what the judge asks of a leg in the wind, climb and course, alone; none: nothing of it.
+  std::optional<Request> in_wind_;
+  bool wind_varies_ = false;  ///< and what it asks depends on the place
   DirectionMask steps_ = 0;
   bool headings_last_ = false;
   std::array<StepMask, kSteps> after_{};   ///< by incoming step
