@@ -129,6 +129,8 @@ TEST(ExposureFields, WindIsThatOfTheScenario) {
   const Request request = testing::request_in(nothing, {0, 0, 0}, {100, 0, 0}, kVolume);
   EXPECT_NEAR(exposure->cost(Leg::straight({0, 10, 0}, {100, 10, 0}), 0, request), 500, 1e-6);
   EXPECT_NEAR(exposure->cost(Leg::straight({0, 10, 20}, {100, 10, 20}), 0, request), 250, 1e-6);
+  site.wind = {};  // where nothing would have a cost
+  EXPECT_THROW(testing::make_objective("exposure", "{of: wind_speed}", site), ParameterError);
 }
 
 TEST(ExposureFields, LevelFlightHasAMeanOfItsHeight) {

@@ -121,6 +121,26 @@ TEST(ExposureTiff, DegreesAreAGridInAGeographicFrame) {
   }
 }
 
+TEST(ExposureTiff, WithoutASystemItIsInTheWorldsMetres) {
+  const Values values = some_values();
+  constexpr std::uint16_t kModel = 1024;
+  constexpr std::uint16_t kUserDefined = 32767;
+  const double west = values.south_west.x() - values.step / 2;
+  const double north = values.south_west.y() + (values.rows - 0.5) * values.step;
+  const TiffText tiff(values, kModel, kUserDefined, west, north, values.step);
+  const auto from_tiff = made(tiff.text(), Frame());
+  const auto from_text = exposure_test::objective_of(values, ", elsewhere: 0");
+  SplitMix64 random(2);
+  const Request request = testing::request_in({}, {0, 0, 0}, {1, 0, 0}, {{0, 0, 0}, {9, 9, 9}});
+  for (int n = 0; n < 50; ++n) {
+    const Leg leg = Leg::straight({150 * random.uniform(), 120 * random.uniform(), 3},
+                                  {150 * random.uniform(), 120 * random.uniform(), 8});
+    EXPECT_EQ(from_tiff->cost(leg, 0, request), from_text->cost(leg, 0, request));
+  }
+  const TiffText projected(values, kModel, 1, west, north, values.step);
+  EXPECT_THROW(made(projected.text(), Frame()), ParameterError);  // in a system without a number
+}
+
 TEST(ExposureTiff, WhatIsNoGridInTheFrameIsRefused) {
   const auto refusal = [](const std::string& text, const Frame& frame) -> std::string {
     try {

@@ -52,6 +52,9 @@ Ask asked(const Sampled& sampled, const Site& site, const World& world) {
     return [&](const Vec3& p) { return std::optional(world.clearance(p)); };
   }
   if (sampled.of == "wind_speed") {
+    if (site.wind.is_calm()) {
+      throw ParameterError("of", "needs wind, and the scenario has none");
+    }
     return [&](const Vec3& p) { return std::optional(site.wind.at(p).norm()); };
   }
   if (!world.has_ground()) {

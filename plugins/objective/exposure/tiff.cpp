@@ -87,19 +87,23 @@ bool is_scaled(TIFF* tiff) {
 /// Of the keys: the coordinate system, and whether values belong to points of it.
 void read_keys(TIFF* tiff, Raster& raster, bool& points) {
   constexpr std::uint32_t kDirectory = 34735;
-  enum Key { raster_type = 1025, geographic_type = 2048, projected_type = 3072 };
+  enum Key { model_type = 1024, raster_type = 1025, geographic_type = 2048, projected_type = 3072 };
   constexpr std::uint16_t kOwn = 32767;  // defined by further keys
   const auto keys = tags<std::uint16_t>(tiff, kDirectory);
+  bool has_system = false;
   for (std::size_t k = 4; k + 3 < keys.size(); k += 4) {
     const std::uint16_t value = keys[k + 3];
     if (keys[k] == raster_type) {
       points = value == 2;
+    } else if (keys[k] == model_type) {
+      has_system = value == 1 || value == 2 || value == 3;  // projected, geographic, geocentric
     } else if (keys[k] == projected_type || (keys[k] == geographic_type && raster.crs.empty())) {
-      if (value == kOwn) {
-        throw Error("its coordinate system is none of EPSG's: warp it to one (gdalwarp -t_srs)");
-      }
-      raster.crs = "EPSG:" + std::to_string(value);
+      has_system = true;
+      raster.crs = value == kOwn ? "" : "EPSG:" + std::to_string(value);
     }
+  }
+  if (has_system && raster.crs.empty()) {
+    throw Error("its coordinate system is none of EPSG's: warp it to one (gdalwarp -t_srs)");
   }
 }
 
@@ -193,10 +197,10 @@ Raster read_tiff(const std::string& file) {
   bool points = false;
   read_keys(tiff.get(), raster, points);
   if (scale.size() < 2 || !(scale[0] > 0 && scale[1] > 0) || tie.size() != 6 || tie[0] != 0 ||
-      tie[1] != 0 || raster.crs.empty()) {
+      tie[1] != 0) {
     throw Error(
-        "has no georeference of a system, a corner and a cell size (rotated rasters are "
-        "not read): gdalwarp writes one");
+        "has no georeference of a corner and a cell size (rotated rasters are not read): gdalwarp "
+        "writes one");
   }
   raster.columns = int(columns);
   raster.rows = int(rows);
