@@ -134,6 +134,10 @@ class Step(unittest.TestCase):
         self.assertEqual((result["flight"]["status"], result["status"], step["status"], code),
                          ("solved", "rejected", "rejected", 1))
         self.assertIn("r: rejected", self.shown())
+        told = json.loads(self.call("check", "r.json", "--json", codes=(1,)).stdout)
+        self.assertEqual(told["returns"], {"returns": step["returns"]})
+        self.assertTrue(told["check"]["ok"] and told["flight"]["check"]["ok"])
+        self.assertIn("returns fail: ", self.call("check", "r.json", codes=(1,)).stdout)
 
     def shown(self):
         """What the page says of the run."""

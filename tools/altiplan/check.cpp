@@ -12,6 +12,7 @@
 #include "host/base/words.hpp"
 #include "host/flight/events.hpp"
 #include "host/flight/track_judge.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/gate/task_verdict.hpp"
 #include "host/gate/violated_zone.hpp"
 #include "host/import_export/imported_route.hpp"
@@ -86,11 +87,43 @@ void name_zones(CheckResult& verdict, const Route& route, const World& world) {
   }
 }
 
-/// Prints the verdicts on the route and, if there is one, on the flight; returns the exit code.
+/// The verdict of a step that judges returns.
+struct JudgedReturns {
+  std::string id;
+  host::ReturnsVerdict verdict;
+};
+
+/// Of the pipeline that a result is of, judged again.
+std::vector<JudgedReturns> returns_of(const host::Config& config, const host::Mission& mission,
+                                      const host::StoredResult& stored) {
+  host::RunResult run;
+  run.steps.emplace_back().route = *stored.route;
+  run.accepted = 0;
+  if (mission.task) {
+    run.task.emplace();
+    for (const host::PlacedStop& stop : stored.stops) {
+      Pass& pass = run.task->passes.emplace_back();
+      pass.points = {stop.at};
+      pass.stop = stop.stop;
+    }
+  }
+  std::vector<JudgedReturns> all;
+  for (const host::StepEntry& step : config.steps) {
+    if (step.verb == host::Verb::returns) {
+      all.push_back({step.id, busy("judging the returns", [&] {
+                       return host::judge_route_returns(config, mission, run, step);
+                     })});
+    }
+  }
+  return all;
+}
+
+/// Prints the verdicts on the route and, if there are any, on the flight and on returns; returns
+/// the exit code.
 int report(const host::Mission& mission, const Route& route,
            const std::optional<host::Track>& track, bool telemetry,
            const std::vector<host::FlightEvent>& events, bool as_json,
-           const std::optional<Violation>& undone) {
+           const std::optional<Violation>& undone, const std::vector<JudgedReturns>& returns) {
   CheckResult verdict = busy("judging the route", [&] {
     return host::judge(route, mission.request, mission.via, mission.runways);
   });
@@ -127,6 +160,13 @@ int report(const host::Mission& mission, const Route& route,
                       {"reached", flown.reached}};
     if (!as_json) {
       print_track(flown, *track, !events.empty());
+    }
+  }
+  for (const auto& [id, judged] : returns) {
+    valid = valid && judged.passes;
+    json["returns"][id] = judged.json.empty() ? host::Json() : host::parse_json(judged.json);
+    if (!as_json) {
+      std::printf("%s %s\n", id.c_str(), judged.message.c_str());
     }
   }
   if (as_json) {
@@ -184,9 +224,10 @@ int check_result(const CheckArguments& arguments) {
   host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
   const std::optional<Violation> undone = undone_by_run(config, mission, stored);
+  const std::vector<JudgedReturns> returns = returns_of(config, mission, stored);
   host::take_open_ends(mission, *stored.route, mission.request);
   return report(mission, *stored.route, stored.track, stored.telemetry,
-                host::build_events(config, mission), arguments.mission.plan.json, undone);
+                host::build_events(config, mission), arguments.mission.plan.json, undone, returns);
 }
 
 int check_route(const CheckArguments& arguments) {
@@ -211,8 +252,8 @@ int check_route(const CheckArguments& arguments) {
     }
   }
   host::take_open_ends(mission, imported.route, mission.request);
-  return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json,
-                left);
+  return report(mission, imported.route, std::nullopt, false, {}, arguments.mission.plan.json, left,
+                {});
 }
 
 /// What is written besides the verdict; returns the options.

@@ -114,7 +114,7 @@ std::string Walker::unjudged_type() const {
         return task == Task::landing_start || task == Task::land || task == Task::vtol_land;
       });
   if (type == 5 && plan_.rally.empty()) {
-    return "a return to a safe point (RTL_TYPE 5), of which there is none";
+    return "a return to a safe point where there is none (RTL_TYPE 5)";
   }
   if ((type == 1 || type == 3) && has_landing && !(autopilot_.is_copter() && only_landing())) {
     return "a return that may go to a landing of more than one item, or of an aeroplane (RTL_TYPE)";
