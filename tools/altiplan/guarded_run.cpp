@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "host/gate/route_returns.hpp"
 #include "host/result/result_json.hpp"
 #include "run_watch.hpp"
 
@@ -42,7 +41,7 @@ host::RunResult guarded_run(const host::Config& config, host::RunOptions options
   options.stop = interrupt.token();
   std::optional<host::ProcessGuard> process(std::in_place);
   options.process = &*process;
-  options.judge_returns = host::judge_route_returns;
+  options.judge_returns = returns_judge();
   std::optional<RunWatch> watch(std::in_place, config, options.timeout_s);
   options.progress = watch->progress();
   options.on_call = [&](const host::RunResult& result) {

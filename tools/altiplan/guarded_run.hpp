@@ -23,6 +23,9 @@ struct CrashOutput {
 /// Prints, and writes, a result; returns the exit code.
 using HandOut = std::function<int(std::FILE* to, const host::RunResult& result)>;
 
+/// What judges steps `returns`; none in the program that tools/run builds first.
+decltype(host::RunOptions::judge_returns) returns_judge();
+
 /// Runs a pipeline with the process guarded against its plugins. If a plugin never returns, the
 /// result so far is handed out and the process ends.
 host::RunResult guarded_run(const host::Config& config, host::RunOptions options,

@@ -57,6 +57,9 @@ void Run::returns_step(const StepEntry& entry) {
   const auto began = Clock::now();
   enter("judging the returns (" + entry.path + ") by layers and constraints");
   try {
+    if (!options_.judge_returns) {
+      throw Error("this program judges no returns: call `altiplan run`");
+    }
     ReturnsVerdict verdict = options_.judge_returns(config_, unordered_, result_, entry);
     step.accepted = verdict.passes;
     step.status = verdict.passes ? RunStatus::solved : RunStatus::rejected;
