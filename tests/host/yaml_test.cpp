@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <clocale>
 #include <fstream>
 #include <locale>
 
 #include "altiplan/error.hpp"
+#include "altiplan/random.hpp"
 
 namespace altiplan::host::yaml_test {
 namespace {
@@ -163,6 +165,65 @@ TEST(Yaml, CapsNestingBeforeTheStackEnds) {
     aliased += "a" + n + ": &a" + n + " [*a" + std::to_string(i - 1) + "]\n";
   }
   EXPECT_PROBLEM(aliased, "64:12 : nested more than 64 levels deep");
+}
+
+/// A random value as JSON, with spaces and ends of lines where they may stand.
+std::string random_json(SplitMix64& random, int depth) {
+  const auto gap = [&] {
+    constexpr std::array kGaps{"", "", " ", "\n", "\r\n  ", "\n\n "};
+    return std::string(kGaps[random.next() % kGaps.size()]);
+  };
+  constexpr std::array kScalars{
+      "1",    "-0.5", "1e5",           "12345678901234567890", "\"5\"", "true", "false",
+      "0.10", "\"\"", "\"a: [b, c}\"", "\"\\n\\\"\\u00fc\"",   "\"ü#\""};
+  const std::uint64_t kind = random.next() % 4;
+  if (depth == 0 || kind >= 2) {
+    return kScalars[random.next() % kScalars.size()];
+  }
+  std::string text = kind == 0 ? "[" : "{";
+  const std::uint64_t count = random.next() % 4;
+  for (std::uint64_t n = 0; n < count; ++n) {
+    text += (n == 0 ? "" : "," + gap()) + gap();
+    text += kind == 0 ? "" : "\"é" + std::to_string(n) + "\" : ";
+    text += random_json(random, depth - 1) + gap();
+  }
+  return text + gap() + (kind == 0 ? "]" : "}");
+}
+
+void expect_equal(const Value& a, const Value& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.text, b.text);
+  EXPECT_EQ(a.quoted, b.quoted);
+  EXPECT_EQ(std::pair(a.where.line, a.where.column), std::pair(b.where.line, b.where.column));
+  ASSERT_EQ(a.items.size(), b.items.size());
+  for (std::size_t n = 0; n < a.items.size(); ++n) {
+    expect_equal(a.items[n], b.items[n]);
+  }
+  ASSERT_EQ(a.entries.size(), b.entries.size());
+  for (std::size_t n = 0; n < a.entries.size(); ++n) {
+    EXPECT_EQ(a.entries[n].key, b.entries[n].key);
+    EXPECT_EQ(std::pair(a.entries[n].where.line, a.entries[n].where.column),
+              std::pair(b.entries[n].where.line, b.entries[n].where.column));
+    expect_equal(a.entries[n].value, b.entries[n].value);
+  }
+}
+
+TEST(Yaml, OfJsonTheSameAsWithAComment) {
+  SplitMix64 random(5);
+  for (int n = 0; n < 3000; ++n) {
+    const std::string text = "{\"root\": " + random_json(random, 5) + "}";
+    SCOPED_TRACE(text);
+    const Value as_json = parse_yaml(text, "f");
+    expect_equal(as_json, parse_yaml(text + "\n# no JSON", "f"));
+    if (HasFailure()) {
+      break;
+    }
+  }
+  EXPECT_PROBLEM("{\"a\": 1,\n \"a\": 2}", "2:2 a: this key occurs twice");
+  EXPECT_PROBLEM("{\"a\": {\"b\": null}}", "1:13 a.b: 'null' is not a value");
+  EXPECT_PROBLEM("{\"a\": \"\\u0007\"}", "1:7 a: a control character");
+  EXPECT_PROBLEM("{\"a\": " + repeated("[", 70) + repeated("]", 70) + "}",
+                 "1:70 : nested more than 64");
 }
 
 TEST(Yaml, CapsNodesAndCycles) {

@@ -5,10 +5,12 @@
 #include <yaml-cpp/parser.h>
 
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "altiplan/formats/input_file.hpp"
 #include "host/base/machine_fault.hpp"
+#include "host/config/json_reader.hpp"
 #include "host/config/yaml_reader.hpp"
 
 namespace altiplan::host {
@@ -81,6 +83,9 @@ class Rest final : public YAML::EventHandler {
 
 Value parse(const YamlSource& source, const char* when_empty) {
   scan_characters(source);
+  if (std::optional<Value> json = read_if_json(source)) {
+    return std::move(*json);
+  }
   YamlReader reader(source);
   try {
     std::istringstream stream{std::string(source.text())};
