@@ -425,7 +425,7 @@ class Returns(PlanCase):
                 (3, [], high, (), "pass"), (3, [], low, beyond, "pass"), (2, self.LANDING, low, (), "pass"),
                 # At the landing alone, which from home lies behind the ridge.
                 (1, self.LANDING, low, (), "fail"), (1, self.LANDING, high, (), "pass"), (1, [], low, (), "fail"),
-                (1, self.LANDING, low, home_side, "pass"), (1, [], low, beyond, "fail"),
+                (1, self.LANDING, low, home_side, "pass"), (1, self.LANDING, low, [(0, 0, 0)], "fail"), (1, [], low, beyond, "fail"),
                 # At a safe point alone; some versions know no such type.
                 (5, self.LANDING, low, beyond, "fail"), (5, self.LANDING, high, beyond, "pass")]:
             told = self.returns(PX4_COPTER, self.beyond() + way, parameters={"RTL_TYPE": type_of, **parameters},

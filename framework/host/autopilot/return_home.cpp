@@ -125,7 +125,9 @@ std::string Walker::unjudged_type() const {
 }
 
 std::vector<Walker::Refuge> Walker::refuges() const {
-  constexpr double kAlike = 20;  // metres
+  constexpr double kAlike = 20;   // metres
+  constexpr double kAtHome = 12;  // metres: PX4 knows no safe point within 10 of home
+  const int type = type_of_return();
   const double doubt = failsafe_ ? failsafe_->radius_m : 0;
   const auto distance = [&](const Refuge& refuge) { return (refuge.at - here()).norm(); };
   const double limit_km = is_px4() ? 0 : parameter("RALLY_LIMIT_KM");
@@ -138,12 +140,12 @@ std::vector<Walker::Refuge> Walker::refuges() const {
     if (distance(rally) <= limit + doubt) {
       all.push_back(rally);
     }
-    if (distance(rally) <= limit - doubt) {
+    const bool is_home = is_px4() && type != 5 && (rally.at - home_).norm() <= kAtHome;
+    if (distance(rally) <= limit - doubt && !is_home) {
       nearest = std::min(nearest, distance(rally));
     }
   }
   const Refuge home{home_, {}, home_z_};
-  const int type = type_of_return();
   if (const auto landing = only_landing(); landing && (type == 1 || type == 3)) {
     const Destination to = destination(*landing);
     all.push_back({to.at, {}, to.low, true});
