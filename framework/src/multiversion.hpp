@@ -2,8 +2,9 @@
 #pragma once
 
 /// ALTIPLAN_CLONES before a function: compiled for the baseline and once more for CPUs with AVX2,
-/// selected when the library is loaded. The arithmetic is that of the source (no contraction), so
-/// both give the same bits. Not used with sanitizers, which start after the selection.
+/// with all that it calls (what is not inlined would be compiled for the baseline alone), selected
+/// when the library is loaded. The arithmetic is that of the source (no contraction), so both give
+/// the same bits. Not used with sanitizers, which start after the selection.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define ALTIPLAN_CLONES
@@ -12,7 +13,7 @@
 #if !defined(ALTIPLAN_CLONES) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__) && defined(__x86_64__) && defined(__has_attribute)
 #if __has_attribute(target_clones)
-#define ALTIPLAN_CLONES __attribute__((target_clones("avx2", "default")))
+#define ALTIPLAN_CLONES __attribute__((target_clones("avx2", "default"), flatten))
 #endif
 #endif
 #ifndef ALTIPLAN_CLONES
