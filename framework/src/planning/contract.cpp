@@ -31,6 +31,9 @@ PlanResult guarded(const std::function<PlanResult()>& call) {
 }
 
 bool legs_are_well_formed(const Route& route) {
+  if (route.is_straight()) {
+    return std::all_of(route.begin(), route.end(), is_finite);
+  }
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     if (!is_well_formed(route.leg(i))) {
       return false;

@@ -120,16 +120,16 @@ Lattice::Lattice(const Request& request, const Vec3& cell_m, Neighbourhood neigh
   for (int set = 0; set < 8; ++set) {
     along[std::size_t(set)] = step(direction(set & 1, set >> 1 & 1, set >> 2 & 1)).norm();
   }
-  for (int d = 0; d < kDirections; ++d) {
+  for (int d = kHere; d < kDirections; ++d) {
     const Cell o = offset(d);
-    lengths_[std::size_t(d)] = along[std::size_t((o[0] & 1) | (o[1] & 1) << 1 | (o[2] & 1) << 2)];
+    const double length = along[std::size_t((o[0] & 1) | (o[1] & 1) << 1 | (o[2] & 1) << 2)];
+    lengths_[std::size_t(d)] = lengths_[std::size_t(opposite(d))] = length;
     strides_[std::size_t(d)] = numbers_.stride(d);
-    const int moved = (o[0] != 0) + (o[1] != 0) + (o[2] != 0);
-    const bool wanted = neighbourhood_ == Neighbourhood::all ? moved > 0 : moved == 1;
-    if (wanted && (o[2] == 0 || !level_m_)) {
-      steps_ |= DirectionMask{1} << d;
-    }
+    strides_[std::size_t(opposite(d))] = -numbers_.stride(d);
   }
+  steps_ = neighbourhood_ == Neighbourhood::all ? kAlongAxes[0] | kAlongAxes[1] | kAlongAxes[2]
+                                                : kAlongAxes[0];
+  steps_ &= level_m_ ? kLevelDirections : ~DirectionMask{0};
 }
 
 DirectionMask Lattice::inside(const Cell& c) const {

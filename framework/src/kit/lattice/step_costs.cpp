@@ -42,9 +42,9 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
   } else {
     per_metre_ = scale == Scale::ratio ? std::min(max_per_metre, 41 / edge) : max_per_metre;
   }
-  for (int d = 0; d < kDirections; ++d) {
+  for (int d = kHere; d < kDirections; ++d) {  // steps to opposite sides are alike
     const double length = lattice.step_length(d);
-    costs_[std::size_t(d)] = of(length);
+    costs_[std::size_t(d)] = costs_[std::size_t(opposite(d))] = of(length);
     if ((lattice.steps() >> d & 1) != 0) {
       const double error = std::abs(costs_[std::size_t(d)] / (length * per_metre_) - 1);
       error_ = costs_[std::size_t(d)] > 0 ? std::max(error_, error) : kInfinity;
@@ -80,11 +80,7 @@ StepCosts::StepCosts(const Lattice& lattice, Scale scale, double longest_m) {
 
 StepCosts::Scale StepCosts::between(Scale wanted, const Lattice& lattice, const Vec3& start,
                                     const Vec3& goal) {
-  const auto is_centre = [&](const Vec3& p) {
-    const std::vector<Lattice::Link> links = lattice.links(p);
-    return links.size() == 1 && links.front().length == 0;
-  };
-  const bool linked = !is_centre(start) || !is_centre(goal);
+  const bool linked = lattice.nearest(start).length > 0 || lattice.nearest(goal).length > 0;
   return wanted == Scale::fine && linked ? Scale::finest : wanted;
 }
 }  // namespace altiplan::kit
