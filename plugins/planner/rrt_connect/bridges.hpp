@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "altiplan/kit/sampling/leg_rules.hpp"
@@ -34,8 +35,12 @@ inline Vec3 direction_in(const Box& box, RandomStream& random) {
 /// Bridges up to `longest` metres in a box, of which few lie outside narrow passages: `tries`
 /// points are looked at. D. Hsu, T. Jiang, J. Reif, Z. Sun: The Bridge Test for Sampling Narrow
 /// Passages with Probabilistic Roadmap Planners. IEEE ICRA 2003, doi:10.1109/ROBOT.2003.1242285.
-inline std::vector<Bridge> find_bridges(const Box& box, double longest, int tries,
-                                        const kit::LegRules& rules, RandomStream random) {
+/// Nothing in clutter, where one point in a hundred finds a bridge: any sample lies in a passage.
+inline std::optional<std::vector<Bridge>> find_bridges(const Box& box, double longest, int tries,
+                                                       const kit::LegRules& rules,
+                                                       RandomStream random) {
+  constexpr std::size_t kEnough = 16;
+  constexpr int kClutter = 100;
   std::vector<Bridge> found;
   for (int n = 0; n < tries; ++n) {
     const Vec3 end = random.in(box);
@@ -47,6 +52,9 @@ inline std::vector<Bridge> find_bridges(const Box& box, double longest, int trie
     if (box.contains(end + 2 * half) && rules.point_ok(end + half) &&
         !rules.point_ok(end + 2 * half)) {
       found.push_back({end + half, std::size_t(magnitude)});
+      if (found.size() >= kEnough && int(found.size()) * kClutter > n) {
+        return std::nullopt;
+      }
     }
   }
   return found;

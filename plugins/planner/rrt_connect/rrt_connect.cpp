@@ -11,7 +11,7 @@
 //   remaining distance to connect is split into equal legs, as a short last one might violate the
 //   minimum leg length; where limits on turn and climb would be violated, a leg is bent until they
 //   are satisfied; a node within the goal's tolerance ends the search; after 1000 edges every other
-//   sample is the middle of a bridge (bridges.hpp), for narrow passages.
+//   sample is the middle of a bridge (bridges.hpp), for narrow passages, except in clutter.
 // Symbols: q_rand the sample, q_near the nearest node, q_new the end of the new leg.
 #include "altiplan/kit/dubins/steering_params.hpp"
 #include "altiplan/kit/scratch.hpp"

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "bridges.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::rrt_connect_test {
@@ -138,6 +139,29 @@ TEST(RrtConnect, FindsNarrowGapsInWalls) {
     ASSERT_EQ(result.status, PlanStatus::solved) << seed << ": " << result.message;
     EXPECT_TRUE(check(result.route, request).ok());
   }
+}
+
+TEST(RrtConnect, SeeksPassagesInWallsButNotInClutter) {
+  const Box volume{{0, 0, 0}, {80, 80, 100}};
+  const auto bridges = [&](std::vector<Shape> shapes) {
+    const Request request =
+        testing::request_in(testing::world_of(std::move(shapes)), {5, 5, 5}, {75, 75, 95}, volume);
+    const kit::LegRules rules(request);
+    return rrt_connect::find_bridges(volume, 15, 50'000, rules, RandomStream(1));
+  };
+  std::vector<Shape> walls = wall_with_gap(30, 30, 50);
+  const std::vector<Shape> second = wall_with_gap(42, 50, 30);
+  walls.insert(walls.end(), second.begin(), second.end());
+  const auto in_walls = bridges(std::move(walls));
+  ASSERT_TRUE(in_walls);
+  EXPECT_FALSE(in_walls->empty());
+  RandomStream random(1);
+  std::vector<Shape> clutter;
+  while (clutter.size() < 2'000) {
+    const Vec3 corner = random.in(volume);
+    clutter.emplace_back(BoxShape{{corner, corner + Vec3::Constant(5)}});
+  }
+  EXPECT_FALSE(bridges(std::move(clutter)));
 }
 
 TEST(RrtConnect, SaysWhatWasInTheWayAndNeverThatThereIsNoWay) {

@@ -78,15 +78,19 @@ class TwoTrees {
     }
   }
 
-  /// Takes about as long as the edges since the last time.
+  /// Among walls takes about as long as the edges since the last time; in clutter looks once.
   void find_passages() {
     constexpr int kTries = 50'000;
     if (expanded_ >= passages_after_) {
       passages_after_ = expanded_ + kHardAfter;
-      const std::vector<Bridge> found = find_bridges(box_, settings_.range, kTries, edges_.rules(),
-                                                     request_.random.sub("bridges", expanded_));
+      const auto found = find_bridges(box_, settings_.range, kTries, edges_.rules(),
+                                      request_.random.sub("bridges", expanded_));
+      if (!found) {
+        passages_after_ = ~std::uint64_t{0};
+        return;
+      }
       for (Passages& passages : passages_) {
-        passages.add(found);
+        passages.add(*found);
       }
     }
   }
