@@ -84,7 +84,7 @@ class ReturnJudge {
 
  private:
   /// What refuses a return.
-  enum Kind : unsigned { kEnergy = 1, kRemark = 2, kLayer = 4, kGround = 8 };
+  enum Kind : unsigned { by_battery = 1, by_remark = 2, by_layer = 4, by_ground = 8 };
 
   struct Refused {
     double from_s;
@@ -120,9 +120,9 @@ class ReturnJudge {
   }
 
   unsigned refused_by(const Whereabouts& place, const FlownMission& home) {
-    unsigned kinds = is_too_much(needed_wh(place, home)) ? unsigned(kEnergy) : 0;
+    unsigned kinds = is_too_much(needed_wh(place, home)) ? unsigned(by_battery) : 0;
     for (const Remark& remark : home.remarks) {
-      kinds |= remark.weight == Remark::Weight::fails ? unsigned(kRemark) : 0;
+      kinds |= remark.weight == Remark::Weight::fails ? unsigned(by_remark) : 0;
     }
     for (const FlownPart& part : home.parts) {
       kinds |= refused_by(part);
@@ -170,8 +170,8 @@ class ReturnJudge {
   /// What is flown at the end is the same for many.
   unsigned refused_by(const FlownPart& part) {
     const auto judged = [&] {
-      return (judge_.keeps_off_layers(part) ? 0 : unsigned(kLayer)) |
-             (judge_.keeps_off_ground(part) ? 0 : unsigned(kGround));
+      return (judge_.keeps_off_layers(part) ? 0 : unsigned(by_layer)) |
+             (judge_.keeps_off_ground(part) ? 0 : unsigned(by_ground));
     };
     if (part.known > 0) {
       const auto [known, is_new] = known_parts_.try_emplace(part.known, 0);
@@ -302,16 +302,16 @@ class ReturnJudge {
 
   Kind kind_of(const Finding& finding) const {
     const std::string& layer = finding.violation.layer;
-    return finding.violation.constraint == "energy"            ? kEnergy
-           : !layer.empty() && !is_ground_layer(layer, world_) ? kLayer
-           : finding.at                                        ? kGround
-                                                               : kRemark;
+    return finding.violation.constraint == "energy"            ? by_battery
+           : !layer.empty() && !is_ground_layer(layer, world_) ? by_layer
+           : finding.at                                        ? by_ground
+                                                               : by_remark;
   }
 
   /// What else refuses returns of a stretch: of each other kind a return.
   void add_others(std::span<const Refused> all, RefusedReturn& stretch) {
     const Kind told = kind_of(stretch.finding);
-    for (const Kind kind : {kEnergy, kRemark, kLayer, kGround}) {
+    for (const Kind kind : {by_battery, by_remark, by_layer, by_ground}) {
       const Refused* example = nullptr;  // of a battery, that which needs most
       for (const Refused& refused : all) {
         const bool is_first = example == nullptr || refused.needed_wh > example->needed_wh;
@@ -327,9 +327,9 @@ class ReturnJudge {
   Finding finding_of(const Refused& refused, Kind kind) {
     const FlownMission home = returns_.from(refused.command, refused.place);
     Finding finding;
-    if (kind == kEnergy) {
+    if (kind == by_battery) {
       set_energy(refused, finding);
-    } else if (kind == kRemark) {
+    } else if (kind == by_remark) {
       set_remark(home, finding);
     } else {
       add_worst(home, kind, finding);
