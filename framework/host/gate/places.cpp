@@ -77,6 +77,7 @@ void add_home(PlanReport& report, const formats::MissionFile& plan, const World&
       " relative to it";
   if (relative > 0) {
     report.findings.insert(report.findings.begin(), {violation, {"home"}, "", 0, place});
+    report.findings.front().is_own_way = true;
   } else {
     report.notes.push_back(violation.message);
   }

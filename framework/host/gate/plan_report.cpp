@@ -400,6 +400,7 @@ void add_route_violations(PlanReport& report, const Mission& world, const Reques
     finding.violation = violation;
     finding.items = {report.name_of_point(violation.at)};
     finding.at = violation.at < route.size() ? std::optional(route[violation.at]) : std::nullopt;
+    finding.is_own_way = true;
     if (violation.at < route.leg_count()) {
       finding.items.push_back(report.name_of_point(violation.at + 1));
     }

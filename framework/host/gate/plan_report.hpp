@@ -26,7 +26,7 @@ struct Finding {
   std::string zone{};              ///< name of the violated layer's part, "" if it has none
   bool is_over_void = false;       ///< there the elevation model has no height
   bool is_unjudged = false;        ///< nothing is known to be wrong
-  bool is_own_way = false;         ///< of the mission's way, whatever its returns are
+  bool is_own_way = false;         ///< of home or the mission's way, whatever its returns are
 };
 
 /// A part of a flight, for tables.
