@@ -24,6 +24,9 @@ TEST_F(PipelineTest, EveryWayToFailHasItsStatusAndExitCode) {
     const char* message;
   } cases[] = {
       {"straight", RunStatus::solved, 0, "route accepted (from 'told')"},
+      {"knows_a_bound", RunStatus::solved, 0,
+       "route accepted (from 'told'), at most 0.1252 % longer than the shortest of its search "
+       "space"},
       {"no_route", RunStatus::no_route, 1, "told: walls all around"},
       {"throws", RunStatus::failed, 4, "told: threw: the attic is on fire"},
       {"throws_int", RunStatus::failed, 4, "threw something that is not a std::exception"},

@@ -19,7 +19,7 @@ struct Params {
     f("does", does)
         .one_of({"straight", "past", "never_stops", "throws", "throws_int", "nan", "huge",
                  "wrong_end", "no_points", "endless_turn", "allocates", "waits", "uses_budget",
-                 "refuses_does", "no_route"})
+                 "refuses_does", "no_route", "knows_a_bound"})
         .doc("what it does");
     f("past_m", past_m).unit("m").doc("of past: the one waypoint between");
   }
@@ -69,6 +69,11 @@ class Told final : public Planner {
     const std::string& does = params_.does;
     if (does == "past") {
       return route(request, {params_.past_m});
+    }
+    if (does == "knows_a_bound") {
+      PlanResult result = route(request, {});
+      result.counters.push_back({"bound_mm", 799'000});
+      return result;
     }
     if (does == "nan") {
       return route(request, {Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0)});

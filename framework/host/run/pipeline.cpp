@@ -2,14 +2,32 @@
 #include "host/run/pipeline.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "altiplan/error.hpp"
+#include "altiplan/measures.hpp"
+#include "host/base/words.hpp"
 #include "host/energy/way_home.hpp"
 #include "host/flight/events.hpp"
 #include "host/judge/judge.hpp"
 #include "host/run/pipeline_run.hpp"
 
 namespace altiplan::host {
+namespace {
+
+/// How much longer the route may be than the shortest, where the planner knows that.
+std::string proved_gap(const StepResult& step) {
+  for (const Counter& counter : step.counters) {
+    if (counter.name == "bound_mm" && counter.value > 0) {
+      const double over = 1000 * length(step.route) / double(counter.value) - 1;
+      const double percent = std::max(std::ceil(1e6 * over) / 1e4, 0.0);  // no less than it is
+      return ", at most " + with_digits(percent, 6) +
+             " % longer than the shortest of its search space";
+    }
+  }
+  return "";
+}
+}  // namespace
 
 Run::Run(const Config& config, const RunOptions& options)
     : config_(config),
@@ -127,10 +145,10 @@ void Run::conclude() {
     result_.message = last.id + ": " + last.message;
     return;
   }
-  const std::string accepted = result_.steps[*result_.accepted].id;
+  const StepResult& accepted = result_.steps[*result_.accepted];
   result_.status = result_.flight ? result_.flight->status : RunStatus::solved;
   result_.reason = result_.flight ? result_.flight->reason : Reason::none;
-  result_.message = "route accepted (from '" + accepted + "')" +
+  result_.message = "route accepted (from '" + accepted.id + "')" + proved_gap(accepted) +
                     (result_.flight ? "; the flight: " + result_.flight->message : "");
   for (const StepResult& step : result_.steps) {
     if (step.verb == Verb::returns && !step.accepted) {
