@@ -8,7 +8,7 @@ set(ALTIPLAN_SLOW_TESTS
   framework_shape framework_swept_volume host_report host_watchdog host_worker_pool_limits
   host_worker_pool_parent host_yaml local_planner_velocity_field pipelines_every_pipeline
   pipelines_fusion_flights planner_anya planner_dstar_lite
-  planner_lazy_theta_star planner_ompl planner_stratified_theta reference_colony_oracle
+  planner_lazy_theta_star planner_ompl planner_stratified_theta planner_taut reference_colony_oracle
   reference_earth reference_random_colonies reference_zone_maps)
 
 function(altiplan_test_program program)

@@ -755,6 +755,20 @@ class Plan(Protocol):
             refine a route level by level in the nodes along it and their neighbours, or at once
             in the cells around a path over blocks of 8 cells, which needs no levels"""
     @overload
+    def __call__(self, file: _Path, name: Literal["taut"], /, start: Any = None, goal: Any = None,
+                 seed: int = 0, within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
+                 plugin_path: Sequence[_Path] = (), cell_m: _Numbers = [50, 50, 10],
+                 gap: _Number = 0.001, max_memory_mb: _Whole = 4096, **others: NoReturn) -> Step:
+        """a route pulled taut around closed cells, and how much longer than the shortest of all it is at most
+
+        cell_m: 3 numbers [m], ≥ 0.001, default [50, 50, 10]
+            cell edge length on each axis; a layer with its own cells overrides it
+        gap: number, ≥ 0, default 0.001
+            how much longer than the bound the route may be, as a fraction: the search ends
+            there
+        max_memory_mb: integer [MB], 1 … 2147483647, default 4096
+            memory limit of the lattice; a larger one is refused before allocation"""
+    @overload
     def __call__(self, file: _Path, name: Literal["theta_star"], /, start: Any = None,
                  goal: Any = None, seed: int = 0, within_s: Optional[float] = None, *,
                  set: Mapping[str, Any] = {}, plugin_path: Sequence[_Path] = (),
@@ -890,7 +904,7 @@ class Plan(Protocol):
                  "bidirectional_astar", "differential_evolution", "dstar_lite", "genetic",
                  "grey_wolf", "hybrid_astar", "improved_ant_colony", "informed_rrt_star", "jps",
                  "lazy_theta_star", "nsga2", "ompl", "pso", "rrt", "rrt_connect", "rrt_star",
-                 "sipp", "spatial_slicing", "spso", "stratified_theta", "theta_star", "apf",
+                 "sipp", "spatial_slicing", "spso", "stratified_theta", "taut", "theta_star", "apf",
                  "velocity_field"], /, start: Any = None, goal: Any = None, seed: int = 0,
                  within_s: Optional[float] = None, *, set: Mapping[str, Any] = {},
                  plugin_path: Sequence[_Path] = (), **parameters: Any) -> RefusedParameters: ...
