@@ -217,6 +217,12 @@ std::vector<Vec3> maybe_points(const Config& config, const Site& site) {
   return points.size() == all.size() ? points : std::vector<Vec3>{};
 }
 
+bool is_solid(std::string_view plugin) {
+  const std::span<const PluginEntry> solids = built_in_environments();
+  return std::any_of(solids.begin(), solids.end(),
+                     [&](const PluginEntry& solid) { return plugin == solid.name; });
+}
+
 /// Builds the layers in order, each with access to those before it.
 void build_layers(const Config& config, Mission& mission, const Calling& calling,
                   const NoteSink& on_note) {
@@ -236,7 +242,9 @@ void build_layers(const Config& config, Mission& mission, const Calling& calling
     }
     site.volume = asked_volume(file, maybe_points(config, site));
     const std::string key = "environment." + std::to_string(i) + "." + entry.plugin;
-    calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
+    if (!is_solid(entry.plugin)) {  // of ten thousand solids, each call would cost more than they
+      calling("the environment '" + entry.plugin + "' (" + key + "): its constructor");
+    }
     Layer layer =
         build_layer(config, entry.plugin, entry.parameters, entry.id, entry.known, site, key);
     const LayerInfo& info = layer.environment->info();
