@@ -39,7 +39,8 @@ class Plan(Protocol):
             number of iterations, in each of which every ant walks once; all are run if the
             budget allows
         deposit_q: number, 1e-09 … 1e+09, default 2000
-            Q of eq. (2): an ant deposits Q divided by the metres of its route
+            Q of eq. (2): an ant deposits Q divided by the metres of its route, or by its cost
+            in metres that cost the same on the first routes
         initial_pheromone: number, 1e-09 … 1e+09, default 2
             initial tau everywhere
         alpha: number, 0 … 20, default 6
@@ -363,7 +364,8 @@ class Plan(Protocol):
             number of iterations, in each of which every ant walks once; all are run if the
             budget allows
         deposit_q: number, 1e-09 … 1e+09, default 2000
-            Q of eq. (2): an ant deposits Q divided by the metres of its route
+            Q of eq. (2): an ant deposits Q divided by the metres of its route, or by its cost
+            in metres that cost the same on the first routes
         initial_pheromone: number, 1e-09 … 1e+09, default 2
             initial tau everywhere
         alpha: number, 0 … 20, default 6
