@@ -75,7 +75,7 @@ class BrickIndex {
     return (place & low.mask()) << low.shift | place >> low.bits << high_[axis].shift;
   }
   std::uint32_t index(const Cell& c) const { return part(0, c[0]) + part(1, c[1]) + part(2, c[2]); }
-  Cell cell(std::uint32_t index) const {
+  [[gnu::always_inline]] Cell cell(std::uint32_t index) const {
     Cell c;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Field& low = low_[axis];
