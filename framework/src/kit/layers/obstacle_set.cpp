@@ -121,8 +121,10 @@ ALTIPLAN_CLONES double min_distance(const BoxNode* nodes, Solids& shapes, const 
 /// Searches ask for many similar legs one after the other, which the same shape blocks.
 thread_local std::int32_t last_leaf = -1;
 
+// Inlined for Clang's clones, too.
 template <class Meets>
-bool any_in_leaf(const BoxNode& leaf, const TreeLeg& leg, const Meets& meets) {
+[[gnu::always_inline]] inline bool any_in_leaf(const BoxNode& leaf, const TreeLeg& leg,
+                                               const Meets& meets) {
   std::uint32_t lanes = lanes_reached(leaf, leg);
   while (lanes != 0 && !meets(std::size_t(leaf.box[std::countr_zero(lanes)]))) {
     lanes &= lanes - 1;
@@ -133,7 +135,8 @@ bool any_in_leaf(const BoxNode& leaf, const TreeLeg& leg, const Meets& meets) {
 /// True if `meets`(n) for one of the shapes whose boxes the leg may reach. Looks first where
 /// something blocked the last leg.
 template <class Meets>
-bool any_on(const std::vector<BoxNode>& nodes, const TreeLeg& leg, const Meets& meets) {
+[[gnu::always_inline]] inline bool any_on(const std::vector<BoxNode>& nodes, const TreeLeg& leg,
+                                          const Meets& meets) {
   const std::int32_t likely = last_leaf;
   if (std::size_t(likely) < nodes.size() && nodes[std::size_t(likely)].is_leaf() &&
       any_in_leaf(nodes[std::size_t(likely)], leg, meets)) {
