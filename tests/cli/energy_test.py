@@ -161,6 +161,15 @@ goal: {at_m: [2700, 2000, 50]}
         lines = [metres for metres in range(150, 1250) if opacity(metres, 90) == 255]
         self.assertEqual(sorted({round(metres, -2) for metres in lines}), [200, 400, 600, 800, 1000, 1200])
 
+    def test_cells_of_ways_home_that_do_not_fit_are_refused_before_the_run(self):
+        self.write("scenario.yaml", WORLD.replace("VEHICLE", "{radius_m: 1}").replace("WIND", "{}"))
+        self.write("pipeline.yaml", "altiplan: 1\nscenario: scenario.yaml\nconstraints:\n"
+                   "  - returnable: {cell_m: [0.1, 0.1, 0.1], power_w: 100, maximum_wh: 90}\n"
+                   "steps: [{plan: astar}]\n")
+        for command in (["validate", "--build"], ["run"]):
+            _, err = self.call(*command, "pipeline.yaml", code=3)
+            self.assertRegex(err, r"pipeline\.yaml:4:\d+: constraints\.returnable: cell_m: the lattice would have ")
+
     def test_limits_count_stops(self):
         """As the objectives time and energy, which searches know by their legs alone."""
         vehicle = "{speed_mps: 9, acceleration_mps2: 1, energy: {multirotor: {mass_kg: 1.5}}}"

@@ -58,6 +58,19 @@ double available_wh(const Params& params, const Vehicle& vehicle) {
   return wh;
 }
 
+/// Throws Error for cells that do not fit the volume before a search asks for ways home.
+void expect_cells(const Site& site, const Vec3& home, const Vec3& cell_m) {
+  Request request;
+  request.world = {std::shared_ptr<void>(), site.before};
+  request.volume = site.volume;
+  request.start.position = request.goal.position = home;
+  try {
+    const kit::Lattice lattice(request, cell_m, kit::Neighbourhood::all, kit::HomeField::kMemory);
+  } catch (const ParameterError& error) {
+    throw Error(error.key() + ": " + error.what());
+  }
+}
+
 class FlightEnergy final : public Objective {
  public:
   explicit FlightEnergy(std::shared_ptr<const Power> power) : power_(std::move(power)) {}
@@ -132,6 +145,9 @@ class Returnable final : public TotalLimit {
     }
     if (homes_.empty() && site.start) {
       homes_.push_back(*site.start);
+    }
+    if (!homes_.empty() && is_finite(site.volume.min) && is_finite(site.volume.max)) {
+      expect_cells(site, homes_.front(), cell_m_);
     }
   }
 

@@ -19,8 +19,6 @@
 namespace altiplan::kit {
 namespace {
 
-/// Cells may take so much.
-constexpr LatticeMemory kMemory{std::size_t{4} << 30, sizeof(std::int32_t)};
 constexpr int kLanes =
     4;  // of a column: below a cell, beside it and above, and one that is not used
 

@@ -23,6 +23,8 @@ namespace altiplan::kit {
 /// of smaller cells has a way. So a route that keeps a limit with it has a way home that keeps it.
 class ALTIPLAN_API HomeField {
  public:
+  /// Cells may take so much.
+  static constexpr LatticeMemory kMemory{std::size_t{4} << 30, sizeof(std::int32_t)};
   /// Cost of a straight leg; it depends on the heights of its ends and the way between them alone.
   using LegCost = std::function<double(const Vec3& from, const Vec3& to)>;
 
