@@ -403,7 +403,7 @@ class Returns(PlanCase):
                 (PX4_COPTER, self.beyond(), {"RTL_TYPE": 2, "RTL_RETURN_ALT": 250}, "RTL_TYPE"),
                 (PX4_COPTER, self.beyond() + self.LANDING, {"RTL_TYPE": 4, "RTL_RETURN_ALT": 250}, "RTL_TYPE 4"),
                 (PX4_COPTER, self.beyond() + self.LANDING, {"RTL_TYPE": 5, "RTL_RETURN_ALT": 250}, "RTL_TYPE 5"),
-                (PX4_COPTER, self.beyond() + [(189, 0)] + self.LANDING, {"RTL_TYPE": 3}, "more than one item"),
+                (PX4_COPTER, self.beyond() + [(189, 0)] + self.LANDING, {"RTL_TYPE": 3}, "mission's landing"),
                 (PX4_COPTER, self.beyond()[:2] + [(178, 3)] + self.beyond()[2:] + self.LANDING, {"RTL_TYPE": 2}, "speed"),
                 (PX4_COPTER, self.beyond()[:2] + [(177, 2, 1)] + self.beyond()[2:] + self.LANDING, {"RTL_TYPE": 2}, "jump"),
                 (PX4_PLANE, [(22, 300, 0, 260)] + self.beyond(False) + [(21, 1900, 1200, 0)], {"RTL_TYPE": 4}, "RTL_TYPE 4"),
@@ -417,21 +417,43 @@ class Returns(PlanCase):
     LANDING = [(21, 1900, 0, 0)]
 
     def test_the_types_of_px4s_returns(self):
-        """To home, safe points and the mission's landing, whichever is nearer; 2 along the mission."""
+        """To home and safe points, whichever is nearer; 2 along the mission. To a landing of the mission a copter
+        sinks on its whole way, once it has climbed: not judged."""
         low, high = {}, {"RTL_RETURN_ALT": 260}
         home_side, beyond = [(100, 100, 0)], [(1900, 100, 0)]
         for type_of, way, parameters, rally, verdict in [
-                (0, self.LANDING, low, (), "fail"), (3, self.LANDING, low, (), "pass"), (3, [], low, (), "fail"),
+                (0, self.LANDING, low, (), "fail"), (3, self.LANDING, low, (), "not_judged"), (3, [], low, (), "fail"),
                 (3, [], high, (), "pass"), (3, [], low, beyond, "pass"), (2, self.LANDING, low, (), "pass"),
-                # At the landing alone, which from home lies behind the ridge.
-                (1, self.LANDING, low, (), "fail"), (1, self.LANDING, high, (), "pass"), (1, [], low, (), "fail"),
-                (1, self.LANDING, low, home_side, "pass"), (1, self.LANDING, low, [(0, 0, 0)], "fail"), (1, [], low, beyond, "fail"),
+                (1, self.LANDING, high, (), "not_judged"), (1, self.LANDING, low, home_side, "not_judged"),
+                (1, [], low, (), "fail"), (1, [], low, beyond, "fail"), (1, [], low, [(1900, 100, 0), (5, 0, 0)], "fail"),
                 # At a safe point alone; some versions know no such type.
                 (5, self.LANDING, low, beyond, "fail"), (5, self.LANDING, high, beyond, "pass")]:
             told = self.returns(PX4_COPTER, self.beyond() + way, parameters={"RTL_TYPE": type_of, **parameters},
                                 rally=rally, code=0 if verdict == "pass" else 1)
             self.assertEqual(told["verdict"], "pass", told["violations"])
             self.assertEqual(told["returns"]["verdict"], verdict, (type_of, way, parameters, rally, told["returns"]))
+
+    def test_what_px4s_parameters_have_it_do_otherwise(self):
+        high = {"RTL_TYPE": 0, "RTL_RETURN_ALT": 260}
+        self.assertEqual(self.returns(PX4_COPTER, self.beyond(), parameters=high, code=0)["returns"]["verdict"], "pass")
+        for name, value in [("NAV_RCL_ACT", 3), ("NAV_DLL_ACT", 1), ("COM_LOW_BAT_ACT", 2), ("NAV_ACC_RAD", 80)]:
+            told = self.returns(PX4_COPTER, self.beyond(), parameters={**high, name: value}, code=1)
+            self.assertEqual(told["returns"]["verdict"], "not_judged")
+            self.assertIn(name, str(told["returns"]["not_judged"]))
+        wing = [(22, 300, 0, 260)] + self.beyond(False) + [(21, 1900, 1200, 0)]
+        for name, value in [("RTL_LAND_DELAY", 0), ("NAV_LOITER_RAD", 25)]:
+            told = self.returns(PX4_PLANE, wing, parameters={"RTL_TYPE": 0, "RTL_RETURN_ALT": 300, name: value}, code=1)
+            self.assertIn(name, str(told["returns"]["not_judged"]))
+        for name, value in [("MPC_XY_VEL_ALL", 1), ("MPC_Z_VEL_MAX_DN", 0.2)]:
+            told = self.returns(PX4_COPTER, self.beyond(), parameters={**high, name: value}, code=1)
+            self.assertIn(name, str(told))
+
+    def test_px4_is_no_faster_than_its_maximum(self):
+        fast = self.returns(PX4_COPTER, self.beyond(), parameters={"RTL_RETURN_ALT": 260}, code=0)["returns"]
+        for name in "MPC_XY_CRUISE", "MPC_XY_VEL_MAX":
+            slow = self.returns(PX4_COPTER, self.beyond(), "--battery", "90", "--power", "200",
+                                parameters={"RTL_RETURN_ALT": 260, name: 1}, code=1)
+            self.assertIn("energy", str(slow["violations"]) + str(slow["returns"]["refused"]), (name, fast))
 
     def test_the_nearest_item_beyond_a_ridge(self):
         """PX4 holds before it returns along a mission, and then flies to the nearest item, the ridge or not."""
@@ -608,8 +630,7 @@ class Referee(PlanCase):
     PLACES = [("N44W072.hgt", 44.26, -71.33, 0.05), ("srtmgl3_boulder_co.asc", 40.15, -105.5, 0.045)]
     KINDS = [(COPTER, {"RTL_ALT_M": 60}), (COPTER, {"RTL_ALT_M": 300}), (PLANE, {"RTL_ALTITUDE": 150}),
              (PLANE, {"RTL_ALTITUDE": 500}), (PX4_COPTER, {"RTL_RETURN_ALT": 90}),
-             (PX4_PLANE, {"RTL_TYPE": 0, "RTL_RETURN_ALT": 200}), (PX4_COPTER, {"RTL_TYPE": 2, "RTL_RETURN_ALT": 30}),
-             (PX4_COPTER, {"RTL_TYPE": 3, "RTL_RETURN_ALT": 60})]
+             (PX4_PLANE, {"RTL_TYPE": 0, "RTL_RETURN_ALT": 200}), (PX4_COPTER, {"RTL_TYPE": 2, "RTL_RETURN_ALT": 30})]
 
     @unittest.skipUnless(MODELS.is_dir(), "no test data: set ALTIPLAN_TEST_DATA")
     def test_no_return_is_passed_that_hits_the_ground(self):
@@ -658,7 +679,7 @@ class Referee(PlanCase):
             lat, lon, z = way[-1]
             items.append(item(9, 21, lat + (z - model.ground(lat, lon)) / math.tan(math.radians(4)) / METRES, lon, 0))
         type_of = parameters.get("RTL_TYPE", 0)
-        if type_of in (2, 3):
+        if type_of == 2:
             items.append(item(9, 21, way[-1][0] + 0.001, way[-1][1], 0))
         self.write(items, firmwareType=vehicle[0], vehicleType=vehicle[1], plannedHomePosition=home)
         (self.folder / "p.param").write_text("".join(f"{name},{value}\n" for name, value in parameters.items()))
@@ -683,9 +704,6 @@ class Referee(PlanCase):
                 is_refused = any(one["from_s"] - 5 <= second <= one["to_s"] + 5 for one in told["returns"]["refused"])
                 if type_of == 2:
                     hits = any(self.is_in_ground(model, at, to, east) for to in self.joined(at, way, b, home, east))
-                elif type_of == 3:
-                    hits = self.hits(model, at, self.nearer(at, home, [way[-1][0] + 0.001, way[-1][1], home[2]], east),
-                                     vehicle, home[2] + above, east)
                 else:
                     hits = self.hits(model, at, home, vehicle, home[2] + above, east)
                 counts["seconds"] += 1
@@ -712,13 +730,6 @@ class Referee(PlanCase):
         length = math.dist((at[0] * METRES, at[1] * east), (to[0] * METRES, to[1] * east))
         return any(at[2] + s * (to[2] - at[2]) < model.ground(at[0] + s * (to[0] - at[0]), at[1] + s * (to[1] - at[1])) - 2
                    for s in (n * 10 / length for n in range(1, int(length / 10) - 1)))
-
-    @staticmethod
-    def nearer(at, one, other, east):
-        """Of two places; the first where they hardly differ, for both are judged there."""
-        def far(place):
-            return math.dist((at[0] * METRES, at[1] * east), (place[0] * METRES, place[1] * east))
-        return other if far(other) < far(one) else one
 
     def hits(self, model, at, home, vehicle, target, east):
         north, west = (home[0] - at[0]) * METRES, (home[1] - at[1]) * east

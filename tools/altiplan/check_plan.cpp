@@ -416,6 +416,7 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   });
   plan.gate.flight.wind_mps =
       std::max(plan.gate.flight.wind_mps, judged.world.request.wind.max_speed());
+  plan.gate.has_events = scenario && !scenario->scenario.events.empty();
   host::take_battery(judged.world.request.vehicle, judged.mission, plan.gate);
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);

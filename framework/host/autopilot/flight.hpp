@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -35,6 +36,11 @@ class Flight {
       : mission_(mission), world_(world), parameters_(parameters) {}
 
   double parameter(std::string_view name) const { return parameters_(name); }
+  /// Of a copter, without orders.
+  double cruise_mps() const {
+    return autopilot().is_px4() ? std::min(parameter("MPC_XY_CRUISE"), parameter("MPC_XY_VEL_MAX"))
+                                : parameter("WP_SPD");
+  }
   bool is_given(std::string_view name) const { return parameters_.is_given(name); }
   formats::Autopilot autopilot() const { return parameters_.autopilot(); }
   const World& world() const { return world_; }

@@ -18,6 +18,7 @@ constexpr double kTerrainMargin = 10;  // metres: WP_TER_MARGIN
 constexpr double kMaxRounds = 40;      // of a circle above the ground, that are followed
 constexpr double kAtHome = 10;         // metres within which a return only goes up and down
 constexpr double kTouchDown = 10;      // metres above the ground from which it sinks slowly
+constexpr double kBeginsBeside = 10;   // metres beside its place at which a landing begins
 
 /// The height of the ground as ArduPilot's copter follows it: within its rates and accelerations.
 struct LaggingGround {
@@ -56,11 +57,9 @@ Vec3 at_height(const Eigen::Vector2d& at, double z) { return {at.x(), at.y(), z}
 
 Hover::Hover(Flight& flight, const Eigen::Vector2d& place, double z)
     : at(place), low(z), high(z), flight_(flight) {
-  const bool is_copter = flight.autopilot().is_copter();
-  const double v = flight.autopilot().is_px4() ? flight.parameter("MPC_XY_CRUISE")
-                   : is_copter                 ? flight.parameter("WP_SPD")
-                                               : 5;  // Q_WP_SPD
-  speed_mps[0] = speed_mps[1] = v;
+  constexpr double kOfQuadPlane = 5;  // Q_WP_SPD
+  const bool hovers_alone = flight.autopilot().is_px4() || flight.autopilot().is_copter();
+  speed_mps[0] = speed_mps[1] = hovers_alone ? flight.cruise_mps() : kOfQuadPlane;
   climb_mps[0] = climb_mps[1] = flight.parameter(climb_parameter(flight.autopilot()));
   sink_mps[0] = sink_mps[1] = flight.parameter(sink_parameter(flight.autopilot()));
 }
@@ -503,6 +502,10 @@ void Hover::land(std::size_t command, const char* what) {
   const double height = high - foot;
   const double last = std::min(height, kTouchDown);
   const bool is_px4 = flight_.autopilot().is_px4();
+  if (is_px4 && flight_.parameter("NAV_ACC_RAD") > kBeginsBeside) {
+    flight_.remark(Remark::Weight::not_judged, "NAV_ACC_RAD", command,
+                   "NAV_ACC_RAD: it sinks from farther beside its place, which is not judged");
+  }
   const double fast = is_px4                            ? flight_.parameter("MPC_LAND_SPEED")
                       : flight_.autopilot().is_copter() ? flight_.parameter("LAND_SPD_MS")
                                                         : flight_.parameter("Q_LAND_FINAL_SPD");

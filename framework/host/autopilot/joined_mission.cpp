@@ -89,6 +89,15 @@ std::vector<Walker::Failsafe> Walker::failsafes(std::size_t n) {
     is_unknown |= add("FS_LONG_ACTN", parameter("FS_LONG_ACTN"), of_long);
     is_unknown |= add("FS_SHORT_ACTN", parameter("FS_SHORT_ACTN"), {{0, {}}, {3, {}}});
     battery_actions(of_long);
+  } else {
+    const auto add_given = [&](const char* name, const Actions& actions) {
+      if (const auto given = options_.parameters.find(name); given != options_.parameters.end()) {
+        is_unknown |= add(name, given->second.value, actions);
+      }
+    };
+    add_given("NAV_RCL_ACT", {{0, {}}, {2, Failsafe::returns}});
+    add_given("NAV_DLL_ACT", {{0, {}}, {2, Failsafe::returns}});
+    add_given("COM_LOW_BAT_ACT", {{0, {}}});
   }
   if (all.empty() && !is_unknown) {
     all.push_back(Failsafe::returns);

@@ -142,12 +142,12 @@ void Walker::change_speed(std::size_t n) {
   bool counts = value > 0;
   if (autopilot_.is_copter()) {
     if (is_px4()) {
-      const double own = parameter("MPC_XY_CRUISE");
+      const double own = flight_.cruise_mps();
       const double limited = std::min(value, parameter("MPC_XY_VEL_MAX"));
       speeds[0] = speeds[1] = value > 0 ? limited : own;
       counts = true;
     }
-    take_speed(counts, speeds, hover_speed_, parameter(is_px4() ? "MPC_XY_CRUISE" : "WP_SPD"));
+    take_speed(counts, speeds, hover_speed_, flight_.cruise_mps());
     set_hover_speed();
     return;
   }
@@ -196,7 +196,7 @@ void Walker::forget_speeds() {
     }
   };
   if (hover_ && autopilot_.is_copter()) {
-    widen(hover_speed_, parameter(is_px4() ? "MPC_XY_CRUISE" : "WP_SPD"));
+    widen(hover_speed_, flight_.cruise_mps());
     if (!is_px4()) {
       widen(climb_rate_, parameter("WP_SPD_UP"));
       widen(sink_rate_, parameter("WP_SPD_DN"));

@@ -116,8 +116,9 @@ std::string Walker::unjudged_type() const {
   if (type == 5 && plan_.rally.empty()) {
     return "a return to a safe point where there is none (RTL_TYPE 5)";
   }
-  if ((type == 1 || type == 3) && has_landing && !(autopilot_.is_copter() && only_landing())) {
-    return "a return that may go to a landing of more than one item, or of an aeroplane (RTL_TYPE)";
+  // Its copters sink on the whole way to a landing of the mission, once they have climbed.
+  if ((type == 1 || type == 3) && has_landing) {
+    return "a return that may go to the mission's landing (RTL_TYPE)";
   }
   return type == 0 || type == 1 || type == 3 || type == 5
              ? ""
@@ -146,11 +147,6 @@ std::vector<Walker::Refuge> Walker::refuges() const {
     }
   }
   const Refuge home{home_, {}, home_z_};
-  if (const auto landing = only_landing(); landing && (type == 1 || type == 3)) {
-    const Destination to = destination(*landing);
-    all.push_back({to.at, {}, to.low, true});
-    nearest = std::min(nearest, distance(all.back()));
-  }
   // PX4's type 1 flies to a safe point even where home is nearer. Some versions do so by type 5,
   // and some not of copters.
   const bool leaves_home_out = type == 1 && !autopilot_.is_copter() && !plan_.rally.empty();
@@ -243,12 +239,6 @@ void Walker::return_hover(std::size_t n, const Refuge& refuge) {
     home.low = hover_->low;
     home.high = hover_->high;
     hover_->go(n, "the way home", home);
-  }
-  const double beside = failsafe_ ? distance + failsafe_->radius_m : distance;
-  if (refuge.is_of_mission && beside <= parameter("NAV_ACC_RAD") + 2) {
-    // It is near enough to sink at once, on its way to the place.
-    flight_.begin(n, "the landing at home").ground = FlownPart::Ground::touched_from_above;
-    flight_.add_tower({refuge.at, beside, 0, 0}, flight_.ground(refuge.at), highest, 2);
   }
   hover_->land(n, "the landing at home");
 }

@@ -53,6 +53,10 @@ constexpr Unmodelled kUnmodelled[] = {
     {"CIRCLE_RATE", 20, 0, is_ardupilots_copter, "it circles at another rate"},
     {"MPC_ACC_HOR", 3, 0, is_of_px4, "it takes other times to speed up"},
     {"MPC_JERK_AUTO", 4, 0, is_of_px4, "it takes other times to speed up"},
+    {"MPC_XY_VEL_ALL", -10, 0, is_of_px4, "it flies at another speed"},
+    {"MPC_Z_VEL_ALL", -3, 0, is_of_px4, "it climbs and sinks at another rate"},
+    {"MPC_Z_VEL_MAX_UP", 3, 0, is_of_px4, "it climbs at another rate"},
+    {"MPC_Z_VEL_MAX_DN", 1.5, 0, is_of_px4, "it sinks at another rate"},
     {"MIS_TKO_LAND_REQ", 0, 0, is_px4s_copter, "it refuses other missions"},
     {"MIS_TKO_LAND_REQ", 2, 1 | 4, is_px4s_wing, "it refuses other missions"},
     {"MIS_DIST_1WP", 900, 0, is_of_px4, "it refuses other missions"},
@@ -79,7 +83,9 @@ constexpr Unmodelled kOfReturns[] = {
     {"RTL_SPEED", 0, 0, is_ardupilots_copter, "a return at another speed"},
     {"RTL_LOIT_TIME", 5000, 0, is_ardupilots_copter, "another wait above home"},
     {"RTL_LAND_DELAY", 0, 0, is_px4s_copter, "a wait above home"},
+    {"RTL_LAND_DELAY", -1, 0, is_px4s_wing, "a landing at home"},
     {"RTL_LOITER_RAD", 80, 0, is_px4s_wing, "another circle above home"},
+    {"NAV_LOITER_RAD", 80, 0, is_px4s_wing, "circles of more than one radius"},
 };
 
 bool has_effect(const Unmodelled& one, Autopilot autopilot, const ParameterFile& file) {

@@ -160,7 +160,6 @@ class Walker {
     Eigen::Vector2d at{0, 0};
     std::optional<double> height_m;  ///< of a rally point, above home
     double z = 0;                    ///< above sea level
-    bool is_of_mission = false;      ///< where it lands
   };
   /// PX4's RTL_TYPE; 0: another's.
   int type_of_return() const;
@@ -168,8 +167,7 @@ class Walker {
   std::optional<std::size_t> only_landing() const;
   /// What of PX4's type of return is not judged; "" if all of it is.
   std::string unjudged_type() const;
-  /// Home, the nearest rally point or the mission's landing, all those whose distances hardly
-  /// differ.
+  /// Home or the nearest rally point, all those whose distances hardly differ.
   std::vector<Refuge> refuges() const;
   /// The lowest and the highest, above sea level, at which a hovering vehicle returns that is so
   /// high and so far away.

@@ -220,6 +220,7 @@ struct GateOptions {
   WorldDuring world_during{};         ///< none: it is the same all the time
   std::optional<GlideOptions> glide{};
   std::optional<Battery> battery{};
+  bool has_events = false;        ///< of the scenario, which change the world in flight
   std::string battery_problem{};  ///< why that of a declared vehicle is not judged; "" if it is
   /// The route need not begin and end where the world's scenario says, nor do its task.
   bool own_ends = true;

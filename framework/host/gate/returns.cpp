@@ -483,6 +483,12 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
   if (!options.battery_problem.empty()) {
     report.unjudged.push_back(options.battery_problem);
   }
+  if (!world.truth.moving().empty()) {
+    report.unjudged.emplace_back("the scenario's moving obstacles");
+  }
+  if (options.has_events) {
+    report.unjudged.emplace_back("the scenario's events");
+  }
   keep_each_once(report.parameters);
   report.verdict = !report.refused.empty()    ? Verdict::fail
                    : !report.unjudged.empty() ? Verdict::not_judged

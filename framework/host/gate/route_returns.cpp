@@ -82,6 +82,7 @@ ReturnsVerdict judge_route_returns(const Config& config, const Mission& mission,
   const formats::MissionFile file =
       formats::read_mission("route.plan", plan_text(made.fewest->plan));
   gate.flight.wind_mps = mission.request.wind.max_speed();
+  gate.has_events = !config.scenario.events.empty();
   take_battery(mission.request.vehicle, file, gate);
   PlanReport report = std::move(made.fewest->report);
   report.returns = judge_returns(file, world, gate);
