@@ -719,10 +719,12 @@ class Referee(PlanCase):
 
     @staticmethod
     def joined(at, way, end, home, east):
-        """The next item, and the nearest one where no other is almost as near: none flies to the others."""
+        """The next item, and the nearest one where no other is almost as near: none flies to the others. To its landing
+        it flies level first."""
         items = [[*home[:2], home[2] + 120], *way, [way[-1][0] + 0.001, way[-1][1], home[2]]]
         metres = sorted((math.dist((one[0] * METRES, one[1] * east, one[2]), (at[0] * METRES, at[1] * east, at[2])), n)
                         for n, one in enumerate(items))
+        items[-1][2] = at[2]
         return [end] + ([items[metres[0][1]]] if metres[1][0] > 1.05 * metres[0][0] + 20 else [])
 
     @staticmethod
