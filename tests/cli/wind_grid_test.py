@@ -116,6 +116,24 @@ class WindGrid(unittest.TestCase):
         self.scenario("grid: w.grb2, bands: [2, 1]", frame=frame)
         self.assertIn("band 2 is VGRD, expected UGRD", self.altiplan("run", "p.yaml", code=3))
 
+    def test_borders_that_are_not_straight_over_the_volume_are_refused(self):
+        """Meridians converge: by 300 km x 300 km tan(latitude) / (radius of the Earth) = 15 km in a corner."""
+        frame = "frame: {crs: local, origin_lonlat: [8, 47]}"
+        for cell, half_km, code in ((0.25, 20, 0), (0.01, 20, 0), (0.25, 100, 0), (0.01, 30, 3), (0.25, 300, 3)):
+            with self.subTest(cell=cell, half_km=half_km):
+                count = round(10 / cell) if half_km > 50 else round(1.2 / cell)
+                self.grid("w.tif", *[[[0] * count] * count] * 2, corner=(8 - count * cell / 2, 47 - count * cell / 2),
+                          cell=cell, system=("-a_srs", "EPSG:4326"))
+                self.scenario("grid: w.tif", frame=frame)
+                scenario = self.folder / "s.yaml"
+                half = half_km * 1000
+                scenario.write_text(scenario.read_text().replace(
+                    "{min_m: [0, 0, 0], max_m: [2000, 1500, 200]}",
+                    f"{{min_m: [-{half}, -{half}, 0], max_m: [{half}, {half}, 200]}}"))
+                (self.folder / "r.csv").write_text("x_m,y_m,z_m\n50,750,100\n1950,750,100\n")
+                said = self.altiplan("check", "--route", "r.csv", "--scenario", "s.yaml", code=code)
+                self.assertEqual("wind.grid: " in said and "the volume is too large for its cells" in said, code == 3)
+
     def test_layers_of_grids(self):
         """A leg is timed by the cells of the layer that it is in; a layer without a grid may be among them."""
         none = [[0] * 4] * 3

@@ -25,6 +25,8 @@ constexpr std::chrono::seconds kLongest{60};  ///< of GDAL's programs
 const std::vector<std::string> kInputs{"-if", "GTiff", "-if", "GRIB"};
 /// Faster than any wind: a file in other units, or of other things.
 constexpr double kFastest = 150;
+/// Of a cell: how far its borders may lie off the file's, whose winds are of a cell's whole extent.
+constexpr double kAstray = 0.1;
 
 /// A file's bands as GDAL reads them.
 class File {
@@ -261,6 +263,33 @@ class Places {
   bool is_same_;
   const Frame& frame_;
 };
+
+/// Throws Error where borders that are straight in the frame, `step` apart from the file's cell at
+/// `corner`, are not about the file's: meridians converge, and parallels bend.
+void expect_straight(const std::string& name, const File& file, const Places& places,
+                     const Place& corner, const Place& step, const Box& volume) {
+  constexpr int kParts = 8;  // what grows away from the cell is seen at the volume's edges
+  const Place near = places.local(corner);
+  for (int place = 0; place < (kParts + 1) * (kParts + 1); ++place) {
+    const Vec3 part(place % (kParts + 1), place / (kParts + 1), 0);
+    const Vec3 local = volume.min + part.cwiseProduct(volume.max - volume.min) / kParts;
+    const Place of_file = places.of_file({local.x(), local.y()});
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      double from = of_file[axis] - corner[axis];
+      if (axis == 0 && file.is_geographic()) {
+        from = std::remainder(from, 360);
+      }
+      const double off = std::abs(from / file.step()[axis] -
+                                  (local[Eigen::Index(axis)] - near[axis]) / step[axis]);
+      if (!(step[axis] > 0 && off <= kAstray)) {
+        throw Error(name +
+                    ": the volume is too large for its cells: their borders are not straight, but "
+                    "more than a tenth of a cell off: cut the volume, or give the wind in the "
+                    "world's metres");
+      }
+    }
+  }
+}
 }  // namespace
 
 WindFile read_wind_grid(const std::string& name, const std::vector<int>& bands, const Frame& frame,
@@ -271,14 +300,14 @@ WindFile read_wind_grid(const std::string& name, const std::vector<int>& bands, 
   // Borders are those of the file's cell in the middle, and of others as large.
   const Place corner = file.corner(places.of_file({middle.x(), middle.y()}));
   const Place near = places.local(corner);
-  const Place far = places.local({corner[0] + file.step()[0], corner[1] + file.step()[1]});
+  const Place step{places.local({corner[0] + file.step()[0], corner[1]})[0] - near[0],
+                   places.local({corner[0], corner[1] + file.step()[1]})[1] - near[1]};
+  expect_straight(name, file, places, corner, step, volume);
   Place south_west{};
-  Place step{};
   std::array<int, 2> counts{};
   double cells = 1;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto at = Eigen::Index(axis);
-    step[axis] = far[axis] - near[axis];
     const double before = std::ceil((near[axis] - volume.min[at]) / step[axis]);
     south_west[axis] = near[axis] - before * step[axis];
     const double count = std::max(1.0, std::ceil((volume.max[at] - south_west[axis]) / step[axis]));
