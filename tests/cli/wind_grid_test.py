@@ -195,6 +195,18 @@ class WindGrid(unittest.TestCase):
         self.grid("lonlat.tif", [[0] * 4] * 3, [[0] * 4] * 3, corner=(8, 47), cell=0.25,
                   system=("-a_srs", "EPSG:4326"))
         self.assertIn("no place on the Earth", refusal("grid: lonlat.tif"))
+        system = 'GEOGCS["x",DATUM["x",SPHEROID["x",%s,298]],PRIMEM["x",%s],UNIT["x",%s]]'
+        degree = math.radians(1)
+        for name, values in (("paris", (6378137, 2.33722917, degree)), ("grad", (6378137, 0, math.pi / 200)),
+                             ("radian", (6378137, 0, 1)), ("moon", (1737400, 0, degree))):
+            self.gdal("gdal_translate", "-q", "-a_srs", system % values, "lonlat.tif", f"{name}.tif")
+            self.assertIn("is not in degrees of the Earth from Greenwich", refusal(f"grid: {name}.tif"))
+        for system in ('GEOGCS["x",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
+                       'UNIT["grad",0.015707963267949]]', "EPSG:4807"):
+            self.gdal("gdal_translate", "-q", "-a_srs", system, "lonlat.tif", "hidden.tif")
+            self.assertIn("is not in degrees of the Earth from Greenwich", refusal("grid: hidden.tif"))
+        self.gdal("gdal_translate", "-q", "-a_srs", "+proj=longlat +R=6371229", "lonlat.tif", "sphere.tif")
+        self.assertIn("no place on the Earth", refusal("grid: sphere.tif"))
         self.gdal("gdal_translate", "-q", "-b", "1", "lonlat.tif", "one.tif")
         self.assertIn("has one band, expected two", refusal("grid: one.tif"))
         self.assertIn("bands are the same twice", refusal("grid: small.tif, bands: [1, 1]"))

@@ -11,6 +11,7 @@
 
 #include "altiplan/error.hpp"
 #include "altiplan/formats/input_file.hpp"
+#include "altiplan/geometry.hpp"
 #include "host/base/gdal_programs.hpp"
 #include "host/base/json.hpp"
 
@@ -60,6 +61,11 @@ class File {
       refuse(
           "is not in longitudes and latitudes, and its directions may not be east and north: "
           "warp it, and turn its vectors");
+    }
+    if (is_geographic_ && !is_usual(wkt)) {
+      refuse(
+          "is not in degrees of the Earth from Greenwich: gdalwarp -t_srs EPSG:4326 brings it "
+          "there");
     }
     read(info.at("bands"), bands.empty() ? bands_of(info.at("bands")) : bands);
   }
@@ -116,12 +122,38 @@ class File {
   }
 
   Json described() const {
-    const std::string printed = gdal("gdalinfo", {"-json"}, {});
+    // The keys of a GeoTIFF have its unit, which a code that it names as well may hide.
+    const std::string printed =
+        gdal("gdalinfo", {"-json", "--config", "GTIFF_SRS_SOURCE", "GEOKEYS"}, {});
     try {
       return parse_json(printed);
     } catch (const Json::exception&) {  // it writes nan
       refuse("has a georeference, or values, that gdalinfo cannot describe");
     }
+  }
+
+  /// The numbers behind the name of each NAME["name",number,...] of a coordinate system.
+  static std::vector<double> numbers_of(const std::string& wkt, const std::string& name) {
+    std::vector<double> numbers;
+    const std::string opens = name + "[\"";
+    for (std::size_t at = wkt.find(opens); at != wkt.npos; at = wkt.find(opens, at + 1)) {
+      const std::size_t number = wkt.find("\",", at + opens.size());
+      numbers.push_back(number == wkt.npos ? NAN : std::strtod(wkt.c_str() + number + 2, nullptr));
+    }
+    return numbers;
+  }
+
+  /// Whether longitudes and latitudes are in degrees, from Greenwich, on an ellipsoid (GRIB: or a
+  /// sphere) of the Earth's size.
+  static bool is_usual(const std::string& wkt) {
+    const auto all = [&](const char* name, double from, double to) {
+      const std::vector<double> numbers = numbers_of(wkt, name);
+      return !numbers.empty() && std::all_of(numbers.begin(), numbers.end(), [&](double number) {
+        return number >= from && number <= to;
+      });
+    };
+    return all("PRIMEM", 0, 0) && all("ANGLEUNIT", radians(1) - 1e-9, radians(1) + 1e-9) &&
+           all("ELLIPSOID", 6.36e6, 6.39e6);
   }
 
   /// Throws Error unless a band holds plain metres a second.
