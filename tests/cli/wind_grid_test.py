@@ -216,6 +216,9 @@ class WindGrid(unittest.TestCase):
                                     ("large.tif", "has more than 4000000 cells", ("-outsize", "3000", "2000"))):
             self.gdal("gdal_translate", "-q", *options, "small.tif", name)
             self.assertIn(said, refusal(f"grid: {name}"))
+        self.gdal("gdal_translate", "-q", "--config", "GDAL_TIFF_INTERNAL_MASK", "YES", "-mask", "1", "-b", "1", "-b", "2",
+                  "small.tif", "masked.tif")
+        self.assertIn("band 1 has a mask", refusal("grid: masked.tif"))
         self.gdal("gdal_translate", "-q", "-of", "VRT", "small.tif", "knots.vrt")
         knots = self.folder / "knots.vrt"
         knots.write_text(knots.read_text().replace("<ColorInterp>Gray", "<UnitType>kt</UnitType><ColorInterp>Gray"))

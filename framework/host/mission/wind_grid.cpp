@@ -165,6 +165,10 @@ class File {
     if (band.value("type", "").starts_with("C")) {
       refuse(name + " holds complex numbers, expected metres a second");
     }
+    const Json mask = band.value("mask", Json::object()).value("flags", Json::array());
+    if (std::find(mask.begin(), mask.end(), "PER_DATASET") != mask.end()) {
+      refuse(name + " has a mask of cells without values: gdal_translate -mask none drops it");
+    }
     const std::string unit = band.value("unit", "");
     constexpr std::array kUnits{"", "m/s", "[m/s]", "m s-1", "m s**-1", "metre/second"};
     if (std::find(kUnits.begin(), kUnits.end(), unit) == kUnits.end()) {
