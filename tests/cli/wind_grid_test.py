@@ -97,6 +97,18 @@ class WindGrid(unittest.TestCase):
                                450 / 25 + 500 / 15 + 500 / 20 + 450 / 30, 6)
         self.assertAlmostEqual(self.cost((50, 700, 100), (1950, 700, 100)), 1900 / 20, 6)
 
+    def test_a_geotiff_of_a_local_system(self):
+        self.grid("w.tif", [[5, -5, 0, 10]] * 3, [[0] * 4] * 3)
+        self.gdal("gdal_translate", "-q", "-mo", "AREA_OR_POINT=Point", "w.tif", "point.tif")
+        for name, unit in (("local", 'LOCAL_CS["x",UNIT["metre",1]]'), ("feet", 'LOCAL_CS["x",UNIT["foot",0.3048]]')):
+            self.gdal("gdal_translate", "-q", "-a_srs", unit, "w.tif", f"{name}.tif")
+        for name in ("point", "local"):
+            self.scenario(f"grid: {name}.tif")
+            self.assertAlmostEqual(self.cost((50, 750, 100), (1950, 750, 100)),
+                                   450 / 25 + 500 / 15 + 500 / 20 + 450 / 30, 6)
+        self.scenario("grid: feet.tif")
+        self.assertIn("is not in longitudes and latitudes", self.altiplan("run", "p.yaml", code=3))
+
     def test_a_leg_through_a_cell_that_is_too_windy_is_refused(self):
         self.grid("w.tif", [[0, 0, -21, 0]] + [[0] * 4] * 2, [[0] * 4] * 3)
         self.scenario("grid: w.tif")

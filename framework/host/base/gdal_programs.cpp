@@ -21,7 +21,11 @@ std::string program_of(const char* name, const std::string& who) {
 
 /// Of "ERROR 1: what is wrong" what is wrong; "" without errors.
 std::string first_complaint(const std::string& said) {
-  const std::size_t error = said.find("ERROR ");
+  std::size_t error = said.find("ERROR ");
+  // gdalinfo asks PROJ for the ellipsoid of systems that have none, and goes on.
+  while (error != said.npos && said.find("proj_get_ellipsoid", error) < said.find('\n', error)) {
+    error = said.find("ERROR ", error + 1);
+  }
   if (error == said.npos) {
     return "";
   }

@@ -57,7 +57,8 @@ class File {
     const Json system = info.value("coordinateSystem", Json::object());
     const std::string wkt = system.value("wkt", "");
     is_geographic_ = wkt.starts_with("GEOG");
-    if (!wkt.empty() && !is_geographic_) {
+    const bool is_local = wkt.starts_with("ENGCRS") && all_within(wkt, "LENGTHUNIT", 1, 1);
+    if (!wkt.empty() && !is_geographic_ && !is_local) {
       refuse(
           "is not in longitudes and latitudes, and its directions may not be east and north: "
           "warp it, and turn its vectors");
@@ -132,28 +133,25 @@ class File {
     }
   }
 
-  /// The numbers behind the name of each NAME["name",number,...] of a coordinate system.
-  static std::vector<double> numbers_of(const std::string& wkt, const std::string& name) {
-    std::vector<double> numbers;
+  /// Whether a coordinate system has parts NAME["name",number,...], all with numbers so large.
+  static bool all_within(const std::string& wkt, const std::string& name, double from, double to) {
     const std::string opens = name + "[\"";
-    for (std::size_t at = wkt.find(opens); at != wkt.npos; at = wkt.find(opens, at + 1)) {
-      const std::size_t number = wkt.find("\",", at + opens.size());
-      numbers.push_back(number == wkt.npos ? NAN : std::strtod(wkt.c_str() + number + 2, nullptr));
+    std::size_t at = wkt.find(opens);
+    bool within = at != wkt.npos;
+    for (; at != wkt.npos; at = wkt.find(opens, at + 1)) {
+      const std::size_t comma = wkt.find("\",", at + opens.size());
+      const double number = comma == wkt.npos ? NAN : std::strtod(wkt.c_str() + comma + 2, nullptr);
+      within = within && number >= from && number <= to;
     }
-    return numbers;
+    return within;
   }
 
   /// Whether longitudes and latitudes are in degrees, from Greenwich, on an ellipsoid (GRIB: or a
   /// sphere) of the Earth's size.
   static bool is_usual(const std::string& wkt) {
-    const auto all = [&](const char* name, double from, double to) {
-      const std::vector<double> numbers = numbers_of(wkt, name);
-      return !numbers.empty() && std::all_of(numbers.begin(), numbers.end(), [&](double number) {
-        return number >= from && number <= to;
-      });
-    };
-    return all("PRIMEM", 0, 0) && all("ANGLEUNIT", radians(1) - 1e-9, radians(1) + 1e-9) &&
-           all("ELLIPSOID", 6.36e6, 6.39e6);
+    return all_within(wkt, "PRIMEM", 0, 0) &&
+           all_within(wkt, "ANGLEUNIT", radians(1) - 1e-9, radians(1) + 1e-9) &&
+           all_within(wkt, "ELLIPSOID", 6.36e6, 6.39e6);
   }
 
   /// Throws Error unless a band holds plain metres a second.
