@@ -182,6 +182,9 @@ class WindGrid(unittest.TestCase):
         self.assertIn("wind.layers.0.grid: the wind is of 1970-01-01T00:00:00Z, the flight starts at "
                       "1970-01-01T05:00:00Z: winds of other hours are not modelled", later)
         self.assertNotIn("wind.layers.1.grid", later)
+        (self.folder / "r.csv").write_text("x_m,y_m,z_m\n50,750,100\n1950,750,100\n")
+        self.assertIn("wind.layers.0.grid: the wind is of 1970-01-01T00:00:00Z",
+                      self.altiplan("check", "--route", "r.csv", "--scenario", "s.yaml"))
 
     def test_routes_take_the_wind_behind(self):
         self.grid("w.tif", [[8] * 4, [-8] * 4, [-8] * 4], [[0] * 4] * 3)

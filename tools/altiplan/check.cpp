@@ -235,6 +235,9 @@ int check_route(const CheckArguments& arguments) {
       host::load_scenario(*arguments.mission.plan.scenario, arguments.overrides);
   host::Mission mission =
       busy("building the world", [&] { return host::build_mission(config, 1); });
+  for (const std::string& warning : mission.warnings) {
+    warn(warning);
+  }
   const host::ImportedRoute imported = host::read_imported_route(*arguments.route, mission);
   for (const std::string& note : imported.notes) {
     info(note);
