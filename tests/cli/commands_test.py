@@ -236,6 +236,14 @@ class Cli(CliCase):
             self.assertEqual(out, "")
             self.assertRegex(err, r"^%s:6:\d+: steps\.0\.plan: the planner 'astar' minimises costs of legs"
                              % re.escape(bad))
+        study = self.write("study.yaml", "altiplan: 1\nscenarios: [{file: scenario.yaml}]\n"
+                           "pipelines: [{id: good, file: pipeline.yaml}, {id: bad, file: bad.yaml}]\nrepetitions: 2\n")
+        for command in (["validate"], ["study", "--out", self.path("store")]):
+            out, err = self.call(*command, study, code=3)
+            self.assertEqual(out, "")
+            self.assertEqual(err.count("minimises costs of legs"), 1, err)
+            self.assertIn("bad.yaml:6:", err)
+        self.assertFalse(os.path.exists(self.path("store")))
 
     def test_bad_files_are_refused_by_validate_and_run(self):
         sample = bad_files()[::10]

@@ -10,6 +10,7 @@
 #include "altiplan_build.hpp"
 #include "host/base/machine_fault.hpp"
 #include "host/base/sha256.hpp"
+#include "host/mission/objective.hpp"
 #include "host/plugins/registry.hpp"
 #include "host/result/result_json.hpp"
 #include "study/model/records.hpp"
@@ -104,6 +105,7 @@ StudyPlan load_study(const fs::path& study, const StudySelection& selection,
           plan.registry = config.registry;
           plan.registries.push_back(config.registry);
         }
+        host::expect_minimised(config);
         text = pair_text(config, plan.file.budget);
       } catch (const PluginError& error) {
         text = error.what();  // only its own runs are refused, one by one
