@@ -118,6 +118,16 @@ TEST(FlownRoute, ItsEnergyIsThatOfEachMoment) {
   EXPECT_NEAR(flown_energy({{0, 0, 100}, {0, 0, 130}}, request, power), 160 * 10 / 3600.0, 1e-12);
 }
 
+TEST(FlownRoute, AgainstAStrongerWindItsEnergyIsInfinite) {
+  Request request = request_at(10);
+  const Route route{{1000, 0, 100}, {0, 0, 160}};
+  request.vehicle.wing = Wing{.airspeed_mps = 10};
+  request.wind.layers = {{-kInfinity, {3, 0, 0}}, {110, {11, 0, 0}}, {150, {12, 0, 0}}};
+  EXPECT_EQ(flown_energy(route, request, SimplePower()), kInfinity);
+  EXPECT_EQ(leg_energy(route.leg(0), request, SimplePower()), kInfinity);
+  EXPECT_EQ(flown_time(route, request), kInfinity);
+}
+
 TEST(FlownRoute, NoRouteTakesMoreThanTheBatteryGives) {
   Request request = request_at(10);
   const Route route{{0, 0, 100}, {1000, 0, 100}};

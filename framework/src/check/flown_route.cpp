@@ -118,7 +118,7 @@ std::vector<Stretch> stretches_of(const Leg& leg, const Request& request) {
       const double seconds = t1 - t0;
       const double speed = seconds > 0 ? metres / seconds : 0;
       all.push_back({{a, b, speed, speed, seconds, 0}, metres, false, false});
-      return true;
+      return std::isfinite(seconds);  // the vehicle gets no farther
     });
   }
   if (!all.empty()) {
@@ -238,8 +238,8 @@ std::pair<FlownPhase, FlownPhase> cut(const FlownPhase& phase, double share) {
 
 /// Of steady flight at each moment: what it takes to accelerate is got back in braking.
 double energy_of(const FlownPhase& phase, const Request& request, const Power& power) {
-  if (phase.seconds == 0) {
-    return 0;
+  if (phase.seconds == 0 || phase.seconds == kInfinity) {
+    return phase.seconds;  // infinite where the wind keeps the vehicle from its way
   }
   const Vec3 way = phase.to - phase.from;
   const double metres = way.norm();
