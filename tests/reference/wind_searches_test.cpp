@@ -66,6 +66,11 @@ Request random_request(SplitMix64& random, int number) {
   request.vehicle.wing = Wing{.airspeed_mps = 20};
   request.limits.max_climb = radians(10);
   request.wind = some_wind(random, number % 4);
+  if (number % 5 == 0) {  // in still air, or in one wind, up but not down, or the reverse
+    request.limits.max_climb = radians(number % 2 == 0 ? 10 : 8);
+    request.limits.max_sink = radians(number % 2 == 0 ? 8 : 10);
+    request.wind = number % 3 == 0 ? some_wind(random, 0) : Wind{};
+  }
   return request;
 }
 

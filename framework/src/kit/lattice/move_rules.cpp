@@ -16,8 +16,12 @@ bool length_kept(double length, const Limits& limits) {
   return length >= limits.min_leg - kLengthTolerance && length <= limits.max_leg + kLengthTolerance;
 }
 
+double slope_limit(const Vec3& leg, const Limits& limits) {
+  return leg.z() < 0 ? limits.max_descent() : limits.max_climb;
+}
+
 bool climb_kept(const Vec3& leg, const Limits& limits) {
-  return climb_angle(leg) <= limits.max_slope() + kAngleTolerance;
+  return climb_angle(leg) <= slope_limit(leg, limits) + kAngleTolerance;
 }
 
 /// Comparison of an angle with a limit by its cosine: a product of two vectors, and of their
@@ -127,8 +131,8 @@ MoveRules::MoveRules(const Request& request, const Lattice& lattice, MoveCheck c
       ground_(request, needed_, asks_world_) {
   const Limits& limits = request.limits;
   const auto cosine = [](double limit) { return std::cos(std::min(limit + kAngleTolerance, kPi)); };
-  cosines_ = {cosine(limits.max_slope()), cosine(limits.max_turn_horizontal),
-              cosine(limits.max_turn_space)};
+  cosines_ = {cosine(limits.max_climb), cosine(limits.max_descent()),
+              cosine(limits.max_turn_horizontal), cosine(limits.max_turn_space)};
   if (check == MoveCheck::cells) {
     grid_ = occupancy(request, lattice);
     if (request.vehicle.body != nullptr) {
@@ -349,8 +353,9 @@ bool MoveRules::keeps_limits(const std::optional<Approach>& before, const Vec3& 
       ++refused_[by_climb];
       return false;
     }
-  } else if (limits.max_slope() < kPi / 2) {
-    const Told told = by_cosine(leg.head<2>().norm(), length, cosines_.climb);
+  } else if (slope_limit(leg, limits) < kPi / 2) {
+    const double cosine = leg.z() < 0 ? cosines_.sink : cosines_.climb;
+    const Told told = by_cosine(leg.head<2>().norm(), length, cosine);
     if (told == Told::broken || (told == Told::nothing && !climb_kept(leg, limits))) {
       ++refused_[by_climb];
       return false;

@@ -61,7 +61,7 @@ class ALTIPLAN_API MoveRules {
   /// Those that pass them whatever step led to c.
   DirectionMask out_of(const Cell& c) { return beside(c, steps_); }
   /// Directions of steps into c that pass them: a reversed step passes whatever the step passes,
-  /// but in wind.
+  /// but in wind, and where a descent may be steeper than a climb or less steep.
   DirectionMask into(const Cell& c) { return reversed(beside(c, reversed(steps_))); }
   /// Steps that may follow the step `in` by the turn limits, and steps that `out` may follow.
   StepMask after(int in) const { return after_[std::size_t(in)]; }
@@ -208,6 +208,7 @@ class ALTIPLAN_API MoveRules {
   bool asks_world_;
   struct {
     double climb = 0;
+    double sink = 0;
     double turn = 0;
     double turn_space = 0;
   } cosines_;                  ///< of the limits on angles
