@@ -118,7 +118,7 @@ TEST(WindSearches, AstarFindsTheShortestRouteThatTheJudgePasses) {
       continue;
     }
     const double shortest = dijkstra(request);
-    for (const char* planner : {"astar", "bidirectional_astar"}) {
+    for (const char* planner : {"astar", "bidirectional_astar", "dstar_lite"}) {
       const PlanResult result =
           testing::make_planner(planner, "{" + kCells + ", corner: any}")->plan(request);
       if (shortest == kInfinity) {

@@ -126,7 +126,7 @@ class CellGraph {
   void successors(std::uint32_t s, int likely, const Visit& visit) {
     const Cell c = lattice_.cell(s);
     const bool judges = legs_.judges();
-    kit::DirectionMask open = judges ? legs_.steps() & lattice_.inside(c) : legs_.into(s, c);
+    kit::DirectionMask open = legs_.out_of(c);
     while (open != 0) {
       const int d = take_direction(open, likely);
       const Move& move = moves_[std::size_t(d)];

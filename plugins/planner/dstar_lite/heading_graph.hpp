@@ -41,9 +41,7 @@ class HeadingGraph {
   void successors(std::uint32_t s, int likely, const Visit& visit) {
     const int in = step_of(s);
     const Cell c = cell(s);
-    kit::DirectionMask open =
-        legs_.steps() & kit::directions_of(legs_.rules().after(in)) & lattice_.inside(c);
-    open &= legs_.judges() ? ~kit::DirectionMask{0} : legs_.into(s / kPerCell, c);
+    kit::DirectionMask open = legs_.out_of(c) & kit::directions_of(legs_.rules().after(in));
     while (open != 0) {
       const int d = take_direction(open, likely);
       const auto is_free = [&, d] {

@@ -34,9 +34,7 @@ class Legs {
   /// Adopts the request's world; cached legs within a box must be invalidated separately.
   void renew() {
     rules_.emplace(problem_.request, lattice_, problem_.settings.moves, problem_.settings.corner);
-    // In wind a step and its reverse may differ: both are to pass.
-    steps_ = rules_->steps() & kit::reversed(rules_->steps()) &
-             (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
+    steps_ = rules_->steps() & (level_ ? kit::kLevelDirections : ~kit::DirectionMask{0});
   }
   void forget(std::uint32_t index) {
     if (judges_ && memory_.judged[index] != 0) {
@@ -51,7 +49,11 @@ class Legs {
 
   /// Directions from a cell to those from which a leg leads to it.
   kit::DirectionMask into(std::uint32_t index, const Cell& c) {
-    return judges_ ? judged(index, c) : by_cells(c);
+    return judges_ ? judged(index, c) : by_cells(c, kit::reversed(steps_));
+  }
+  /// Directions in which a leg from the cell may lead; those that are judged are still to be.
+  kit::DirectionMask out_of(const Cell& c) const {
+    return judges_ ? steps_ & lattice_.inside(c) : by_cells(c, steps_);
   }
   /// True if the leg from the cell in that direction is free; the neighbour must exist.
   bool leads(std::uint32_t index, const Cell& c, int d) {
@@ -65,12 +67,12 @@ class Legs {
  private:
   static constexpr std::uint32_t kJudged = std::uint32_t{1} << kit::kDirections;
 
-  kit::DirectionMask by_cells(const Cell& c) const {
+  kit::DirectionMask by_cells(const Cell& c, kit::DirectionMask steps) const {
     const VoxelGrid& grid = *rules_->grid();
     const std::uint64_t* words = grid.words().data();
     const kit::DirectionMask blocked = level_ ? kit::bits_around<true>(grid, words, grid.bit(c))
                                               : kit::bits_around(grid, words, grid.bit(c));
-    return steps_ & kit::free_steps(blocked, problem_.settings.corner);
+    return steps & kit::free_steps(blocked, problem_.settings.corner);
   }
 
   kit::DirectionMask judged(std::uint32_t index, const Cell& c) {
@@ -78,7 +80,7 @@ class Legs {
     if (known != 0) {
       return known & (kJudged - 1);
     }
-    kit::DirectionMask free = rules_->places_free(c, steps_ & rules_->out_of(c), true);
+    kit::DirectionMask free = rules_->places_free(c, kit::reversed(rules_->into(c)), true);
     if (problem_.request.judges_pairs()) {
       const Vec3 here = lattice_.position(c);
       for (kit::DirectionMask open = free; open != 0; open &= open - 1) {
