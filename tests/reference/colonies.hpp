@@ -213,6 +213,22 @@ inline void expect_limits_hold(const std::string& planner, const std::string& se
   EXPECT_GE(solved, 2);
 }
 
+/// Of a wind from the west, in which courses lead 56 degrees off it at most, cells know nothing.
+inline void expect_strong_wind_obeyed(const std::string& planner, const std::string& settings) {
+  Request request = flat_world();
+  request.vehicle.speed_mps = 10;
+  request.wind.layers = {{-kInfinity, {12, 0, 0}}};
+  int solved = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    request.random = RandomStream(seed);
+    const PlanResult result = plan_of(planner, settings, request);
+    solved += result.status == PlanStatus::solved ? 1 : 0;
+    const CheckResult judged = check(result.route, request);
+    EXPECT_TRUE(result.route.empty() || judged.ok()) << judged.violations.front().message;
+  }
+  EXPECT_GE(solved, 2);
+}
+
 inline void expect_ends_joined(const std::string& planner, const std::string& settings) {
   Request request = flat_world();
   request.goal.position += Vec3(3.1, -2.2, 0);

@@ -148,6 +148,10 @@ TEST(ImprovedAntColony, MinimisesAnObjective) {
 
 TEST(ImprovedAntColony, LimitsHold) { testing::expect_limits_hold(kName, kCells); }
 
+TEST(ImprovedAntColony, CoursesHoldInStrongWind) {
+  testing::expect_strong_wind_obeyed(kName, kCells);
+}
+
 TEST(ImprovedAntColony, EndsOffTheCentresOfCells) { testing::expect_ends_joined(kName, kCells); }
 
 TEST(ImprovedAntColony, RoulettesStayNumbersForHundredsOfIterations) {

@@ -47,7 +47,8 @@ Colony::Colony(const Request& request, const ColonyParams& params, const Lattice
       lattice_(lattice),
       grid_(occupancy(request, lattice)),
       cells_decide_(MoveRules::cells_decide(request) && request.limits.min_leg == 0 &&
-                    request.limits.max_leg == kInfinity) {
+                    request.limits.max_leg == kInfinity &&
+                    request.wind.max_speed() < request.air_speed()) {
   const Vec3 size = lattice.spec().box().max - lattice.spec().box().min;
   longest_ = std::min(params.max_length_m.value.value_or(3 * (size.x() + size.y())),
                       request.limits.max_route_length);
