@@ -213,15 +213,18 @@ inline void expect_limits_hold(const std::string& planner, const std::string& se
   EXPECT_GE(solved, 2);
 }
 
-/// Of a wind from the west, in which courses lead 56 degrees off it at most, cells know nothing.
-inline void expect_strong_wind_obeyed(const std::string& planner, const std::string& settings) {
-  Request request = flat_world();
+/// In a wind from the north-west in which courses lead 72 degrees off it at most, around a ball, of
+/// which cells know nothing.
+inline void expect_strong_wind_obeyed(const std::string& planner) {
+  Request request = request_in(world_of({Shape{Sphere{{300, 300, 50}, 60}}}), {112.5, 487.5, 50},
+                               {487.5, 112.5, 50}, {{0, 0, 50}, {600, 600, 50}});
+  request.level_m = 50;
   request.vehicle.speed_mps = 10;
-  request.wind.layers = {{-kInfinity, {12, 0, 0}}};
+  request.wind.layers = {{-kInfinity, {7.4, -7.4, 0}}};
   int solved = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     request.random = RandomStream(seed);
-    const PlanResult result = plan_of(planner, settings, request);
+    const PlanResult result = plan_of(planner, "cell_m: [25, 25, 10]", request);
     solved += result.status == PlanStatus::solved ? 1 : 0;
     const CheckResult judged = check(result.route, request);
     EXPECT_TRUE(result.route.empty() || judged.ok()) << judged.violations.front().message;

@@ -305,8 +305,9 @@ void expect_straight(const std::string& name, const File& file, const Places& pl
   constexpr int kParts = 8;  // what grows away from the cell is seen at the volume's edges
   const Place near = places.local(corner);
   for (int place = 0; place < (kParts + 1) * (kParts + 1); ++place) {
-    const Vec3 part(place % (kParts + 1), place / (kParts + 1), 0);
-    const Vec3 local = volume.min + part.cwiseProduct(volume.max - volume.min) / kParts;
+    const std::div_t part = std::div(place, kParts + 1);
+    const Vec3 local =
+        volume.min + Vec3(part.rem, part.quot, 0).cwiseProduct(volume.max - volume.min) / kParts;
     const Place of_file = places.of_file({local.x(), local.y()});
     for (std::size_t axis = 0; axis < 2; ++axis) {
       double from = of_file[axis] - corner[axis];

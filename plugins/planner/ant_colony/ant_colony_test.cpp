@@ -49,9 +49,7 @@ TEST(AntColony, MinimisesAnObjective) { testing::expect_objective_minimised("ant
 
 TEST(AntColony, LimitsHold) { testing::expect_limits_hold("ant_colony", kCells); }
 
-TEST(AntColony, CoursesHoldInStrongWind) {
-  testing::expect_strong_wind_obeyed("ant_colony", kCells);
-}
+TEST(AntColony, CoursesHoldInStrongWind) { testing::expect_strong_wind_obeyed("ant_colony"); }
 
 TEST(AntColony, EndsOffTheCentresOfCells) { testing::expect_ends_joined("ant_colony", kCells); }
 

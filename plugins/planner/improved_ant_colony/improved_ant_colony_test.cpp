@@ -148,9 +148,7 @@ TEST(ImprovedAntColony, MinimisesAnObjective) {
 
 TEST(ImprovedAntColony, LimitsHold) { testing::expect_limits_hold(kName, kCells); }
 
-TEST(ImprovedAntColony, CoursesHoldInStrongWind) {
-  testing::expect_strong_wind_obeyed(kName, kCells);
-}
+TEST(ImprovedAntColony, CoursesHoldInStrongWind) { testing::expect_strong_wind_obeyed(kName); }
 
 TEST(ImprovedAntColony, EndsOffTheCentresOfCells) { testing::expect_ends_joined(kName, kCells); }
 
