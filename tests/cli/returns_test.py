@@ -448,6 +448,12 @@ class Returns(PlanCase):
             told = self.returns(PX4_COPTER, self.beyond(), parameters={**high, name: value}, code=1)
             self.assertIn(name, str(told))
 
+    def test_a_copter_in_a_wind_as_fast_as_itself_is_not_judged(self):
+        high = {"RTL_ALT_M": 260}
+        self.assertEqual(self.returns(COPTER, self.beyond(), "--wind", "9", parameters=high, code=0)["verdict"], "pass")
+        told = self.returns(COPTER, self.beyond(), "--wind", "10", parameters=high, code=1)
+        self.assertEqual(told["verdict"], "not_judged", told["violations"])
+
     def test_px4_is_no_faster_than_its_maximum(self):
         fast = self.returns(PX4_COPTER, self.beyond(), parameters={"RTL_RETURN_ALT": 260}, code=0)["returns"]
         for name in "MPC_XY_CRUISE", "MPC_XY_VEL_MAX":

@@ -109,6 +109,13 @@ void Walker::remark_parameters() {
   for (const Unmodelled& one : kUnmodelled) {
     remark(one, 0, flight_, options_);
   }
+  // It keeps its speed over the ground as long as it can lean into the wind, which most can in
+  // this.
+  constexpr double kHeldByMost = 10;  // m/s
+  if (autopilot_.is_copter() && options_.wind_mps >= std::max(kHeldByMost, flight_.cruise_mps())) {
+    flight_.remark(Weight::not_judged, "wind", 0,
+                   "how a copter flies in a wind as fast as itself is not judged (--wind)");
+  }
   for (std::size_t n = 0; n < commands_.size(); ++n) {
     const Task task = task_of(n);
     if (task == Task::return_home) {
