@@ -2,6 +2,7 @@
 #include "host/gate/route_returns.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "altiplan/error.hpp"
 #include "host/gate/declared_battery.hpp"
@@ -24,6 +25,20 @@ ExportSource source_of(const Config& config, const RunResult& result) {
     }
   }
   return source;
+}
+
+/// How long after the start zones with hours are known; infinite without any.
+double zones_known_s(const ScenarioFile& scenario) {
+  constexpr double kByDefault = 3600;  // horizon_s of the environment zones
+  double known_s = kInfinity;
+  for (const LayerEntry& layer : scenario.environment) {
+    if (scenario.start_time && layer.plugin == "zones") {
+      const Value* given = layer.parameters.find("horizon_s");
+      known_s = std::min(known_s,
+                         given != nullptr ? std::strtod(given->text.c_str(), nullptr) : kByDefault);
+    }
+  }
+  return known_s;
 }
 
 /// What is said of a mission that is not made, or fails.
@@ -86,7 +101,11 @@ ReturnsVerdict judge_route_returns(const Config& config, const Mission& mission,
   take_battery(mission.request.vehicle, file, gate);
   PlanReport report = std::move(made.fewest->report);
   report.returns = judge_returns(file, world, gate);
-  const ReturnsReport& returns = *report.returns;
+  ReturnsReport& returns = *report.returns;
+  if (report.time.max_s > zones_known_s(config.scenario)) {
+    returns.unjudged.emplace_back("zones with hours, after the horizon_s of zones");
+    returns.verdict = returns.verdict == Verdict::pass ? Verdict::not_judged : returns.verdict;
+  }
   std::string message = std::string(word_of(returns.verdict)) + ": " + returns.in_words();
   if (const RefusedReturn* worst = returns.worst()) {
     message += ": " + in_words(*worst, report);
