@@ -122,6 +122,21 @@ class Step(unittest.TestCase):
         self.assertEqual(returns["verdict"], "not_judged")
         self.assertIn("not judged", json.loads((self.folder / "r.json").read_text())["message"])
 
+    def test_what_changes_in_flight(self):
+        """Zones that open after their horizon_s, events, obstacles that planners do not know."""
+        high = {"RTL_ALT_M": 320}
+        ball = "{sphere: {at_m: [9000, 9000, 700], radius_m: 40%s}%s}"
+        events = f"events:\n  - {{at_s: 200, id: pop_up, add: {ball % ('', '')}}}\n"
+        moving = f"moving:\n  - {ball % (', velocity_mps: [5, 0, 0]', ', known: false')}\n"
+        for more, what in ((events, "events"), (moving, "moving obstacles")):
+            returns = self.expect_same(scenario(COPTER, more=more), parameters=high)
+            self.assertEqual((returns["verdict"], what in str(returns["not_judged"])), ("not_judged", True), returns)
+        zones = "  - zones: {%slist: [{cylinder: {at_m: [15000, 17000], radius_m: 300}, from: '2026-05-01T12:00:00Z'}]}\nvolume"
+        for horizon, verdict in (("", "not_judged"), ("horizon_s: 20000, ", "pass")):
+            world = scenario(COPTER, more="start_time: 2026-05-01T10:00:00Z\n").replace("volume", zones % horizon, 1)
+            returns = self.expect_same(world, parameters={"RTL_ALT_M": 320, "WP_SPD": 2})
+            self.assertEqual(returns["verdict"], verdict, returns)
+
     def test_a_route_that_is_no_mission(self):
         result, step, code = self.run_step(
             scenario(VTOL, height=250, clearance=80).replace("ground_clearance: {min_m: 80}", "ground_clearance: {min_m: 240}"),

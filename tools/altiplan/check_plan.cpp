@@ -22,6 +22,7 @@
 #include "host/gate/plan_report.hpp"
 #include "host/gate/return_cure.hpp"
 #include "host/gate/returns.hpp"
+#include "host/gate/route_returns.hpp"
 #include "host/import_export/route_format.hpp"
 #include "host/mission/mission.hpp"
 #include "host/result/result_json.hpp"
@@ -416,7 +417,9 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   });
   plan.gate.flight.wind_mps =
       std::max(plan.gate.flight.wind_mps, judged.world.request.wind.max_speed());
-  plan.gate.has_events = scenario && !scenario->scenario.events.empty();
+  if (scenario) {
+    host::take_changes(scenario->scenario, plan.gate);
+  }
   host::take_battery(judged.world.request.vehicle, judged.mission, plan.gate);
   judged.report = busy("judging the mission", [&] {
     return host::judge_plan(plan.plan, judged.mission, judged.world, plan.gate);

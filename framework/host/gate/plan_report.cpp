@@ -451,11 +451,10 @@ void add_energy(PlanReport& report, const formats::MissionFile& plan, const Worl
   report.energy = use;
 }
 
-/// The times at which a mission is flown are a band, which begins whenever it is started.
-Finding moving_not_judged() {
+Finding mission_not_judged(const char* rule, std::string message) {
   Finding finding;
-  finding.violation.constraint = "moving";
-  finding.violation.message = "how near it comes to the scenario's moving obstacles is not judged";
+  finding.violation.constraint = rule;
+  finding.violation.message = std::move(message);
   finding.items = {"the mission"};
   finding.is_unjudged = true;
   return finding;
@@ -525,9 +524,14 @@ PlanReport judge_plan(const std::string& file, const formats::MissionFile& plan,
     throw Error(file + ": " + error.what());
   }
   expect_to_scale(report, world.truth.frame());
-  if (avoids_moving(request)) {
-    report.findings.push_back(moving_not_judged());
+  if (avoids_moving(request)) {  // the times at which a mission is flown are a band
+    report.findings.push_back(mission_not_judged(
+        "moving", "how near it comes to the scenario's moving obstacles is not judged"));
     request.world = std::make_shared<const World>(world.truth.with_moving({}));
+  }
+  if (flown_until_s(report) > options.zones_known_s) {
+    report.findings.push_back(
+        mission_not_judged("zones", "not judged are " + std::string(kZonesUnknown)));
   }
   if (kit::has_hours(*request.world)) {  // when the mission is flown is not known to the second
     request.world =

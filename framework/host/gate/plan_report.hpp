@@ -211,6 +211,9 @@ struct GlideOptions {
   std::vector<GlideSite> sites;  ///< none: home, and where the mission lands
 };
 
+/// Of flights that last longer than GateOptions::zones_known_s.
+inline constexpr const char* kZonesUnknown = "zones with hours, after the horizon_s of zones";
+
 /// Who may fly it, as far as the user says.
 struct GateOptions {
   std::optional<formats::Firmware> firmware{};
@@ -220,7 +223,9 @@ struct GateOptions {
   WorldDuring world_during{};         ///< none: it is the same all the time
   std::optional<GlideOptions> glide{};
   std::optional<Battery> battery{};
-  bool has_events = false;        ///< of the scenario, which change the world in flight
+  bool has_events = false;  ///< of the scenario, which change the world in flight
+  /// How long after the start the world knows which zones with hours are open.
+  double zones_known_s = kInfinity;
   std::string battery_problem{};  ///< why that of a declared vehicle is not judged; "" if it is
   /// The route need not begin and end where the world's scenario says, nor do its task.
   bool own_ends = true;

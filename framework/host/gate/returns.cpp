@@ -454,6 +454,7 @@ FailsafeWorld world_of_failsafes(const Mission& world, const GateOptions& option
 ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& world,
                             const GateOptions& options) {
   ReturnsReport report;
+  double end_s = 0;
   if (plan.commands.empty()) {
     report.unjudged.emplace_back("the file holds no commands: what flies it is not known");
   } else {
@@ -475,6 +476,7 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
         is_all = !options.world_during || judge.end_s() <= until_s;
         if (is_all) {
           report = std::move(tried);
+          end_s = std::max(end_s, judge.end_s());
         }
         until_s = judge.end_s() + 60;
       }
@@ -488,6 +490,9 @@ ReturnsReport judge_returns(const formats::MissionFile& plan, const Mission& wor
   }
   if (options.has_events) {
     report.unjudged.emplace_back("the scenario's events");
+  }
+  if (end_s > options.zones_known_s) {
+    report.unjudged.emplace_back(kZonesUnknown);
   }
   keep_each_once(report.parameters);
   report.verdict = !report.refused.empty()    ? Verdict::fail

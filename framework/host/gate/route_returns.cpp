@@ -27,20 +27,6 @@ ExportSource source_of(const Config& config, const RunResult& result) {
   return source;
 }
 
-/// How long after the start zones with hours are known; infinite without any.
-double zones_known_s(const ScenarioFile& scenario) {
-  constexpr double kByDefault = 3600;  // horizon_s of the environment zones
-  double known_s = kInfinity;
-  for (const LayerEntry& layer : scenario.environment) {
-    if (scenario.start_time && layer.plugin == "zones") {
-      const Value* given = layer.parameters.find("horizon_s");
-      known_s = std::min(known_s,
-                         given != nullptr ? std::strtod(given->text.c_str(), nullptr) : kByDefault);
-    }
-  }
-  return known_s;
-}
-
 /// What is said of a mission that is not made, or fails.
 std::string problem_of(const RouteMission& made) {
   if (!made.fewest) {
@@ -52,6 +38,19 @@ std::string problem_of(const RouteMission& made) {
          finding.items.front() + ": " + finding.violation.message;
 }
 }  // namespace
+
+void take_changes(const ScenarioFile& scenario, GateOptions& options) {
+  constexpr double kByDefault = 3600;  // horizon_s of the environment zones
+  options.has_events = !scenario.events.empty();
+  for (const LayerEntry& layer : scenario.environment) {
+    if (scenario.start_time && layer.plugin == "zones") {
+      const Value* given = layer.parameters.find("horizon_s");
+      const double known_s =
+          given != nullptr ? std::strtod(given->text.c_str(), nullptr) : kByDefault;
+      options.zones_known_s = std::min(options.zones_known_s, known_s);
+    }
+  }
+}
 
 RouteMission mission_of_route(const Mission& mission, const ExportSource& source,
                               ExportOptions options, GateOptions gate) {
@@ -97,15 +96,11 @@ ReturnsVerdict judge_route_returns(const Config& config, const Mission& mission,
   const formats::MissionFile file =
       formats::read_mission("route.plan", plan_text(made.fewest->plan));
   gate.flight.wind_mps = mission.request.wind.max_speed();
-  gate.has_events = !config.scenario.events.empty();
+  take_changes(config.scenario, gate);
   take_battery(mission.request.vehicle, file, gate);
   PlanReport report = std::move(made.fewest->report);
   report.returns = judge_returns(file, world, gate);
-  ReturnsReport& returns = *report.returns;
-  if (report.time.max_s > zones_known_s(config.scenario)) {
-    returns.unjudged.emplace_back("zones with hours, after the horizon_s of zones");
-    returns.verdict = returns.verdict == Verdict::pass ? Verdict::not_judged : returns.verdict;
-  }
+  const ReturnsReport& returns = *report.returns;
   std::string message = std::string(word_of(returns.verdict)) + ": " + returns.in_words();
   if (const RefusedReturn* worst = returns.worst()) {
     message += ": " + in_words(*worst, report);
