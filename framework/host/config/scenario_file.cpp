@@ -154,8 +154,7 @@ void WindKindEntry::describe(Fields& f) {
   f("grid", grid)
       .doc(
           "alternatively: wind by cells, of a GRIB file or GeoTIFF: metres a second toward east "
-          "and "
-          "north");
+          "and north");
   f("bands", bands)
       .at_least(1)
       .doc(
