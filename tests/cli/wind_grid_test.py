@@ -180,11 +180,28 @@ class WindGrid(unittest.TestCase):
         self.assertNotIn("other hours", said(layers, code=0))
         later = said(layers, 0, "\nstart_time: 1970-01-01T05:00:00Z")
         self.assertIn("wind.layers.0.grid: the wind is of 1970-01-01T00:00:00Z, the flight starts at "
-                      "1970-01-01T05:00:00Z: winds of other hours are not modelled", later)
+                      "1970-01-01T05:00:00Z: wind.hours has winds of other hours", later)
         self.assertNotIn("wind.layers.1.grid", later)
         (self.folder / "r.csv").write_text("x_m,y_m,z_m\n50,750,100\n1950,750,100\n")
         self.assertIn("wind.layers.0.grid: the wind is of 1970-01-01T00:00:00Z",
                       self.altiplan("check", "--route", "r.csv", "--scenario", "s.yaml"))
+
+    def test_grib_by_the_hour(self):
+        rows = [[[n] * 4] * 3 for n in (5, 0, -5, 0)]
+        self.grid("w.grb2", *rows, corner=(8, 47), cell=0.25, options=grib((0, 10), (3, 10)),
+                  system=("-a_srs", "EPSG:4326"))
+        frame = "frame: {crs: local, origin_lonlat: [8.3, 47.3]}\nstart_time: 1970-01-01T02:00:00Z"
+        hours = "hours: [{from_time: 1970-01-01T00:00:00Z, grid: w.grb2, bands: [1, 2]}, " \
+            "{from_time: 1970-01-01T02:00:40Z, grid: w.grb2, bands: [3, 4]}]"
+        ends = (50, 750, 100), (1950, 750, 100)
+        self.scenario(hours, frame=frame)
+        self.assertAlmostEqual(self.cost(*ends), 40 + (1900 - 40 * 25) / 15, delta=0.02)
+        self.assertNotIn("the wind is of", self.altiplan("run", "p.yaml"))
+        self.scenario(hours.replace("bands: [3, 4]", "bands: [1, 2]").replace("02:00:40", "04:30:40"), frame=frame)
+        self.assertIn("wind.hours.1.grid: the wind is of 1970-01-01T00:00:00Z, and is to blow from "
+                      "1970-01-01T04:30:40Z on", self.altiplan("run", "p.yaml"))
+        self.scenario(hours.replace("bands: [3, 4]", "bands: [3, 2]"), frame=frame)
+        self.assertRegex(self.altiplan("run", "p.yaml", code=3), r"wind\.hours\.1\.grid: .*two hours")
 
     def test_routes_take_the_wind_behind(self):
         self.grid("w.tif", [[8] * 4, [-8] * 4, [-8] * 4], [[0] * 4] * 3)

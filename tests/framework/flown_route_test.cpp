@@ -124,7 +124,7 @@ TEST(FlownRoute, AgainstAStrongerWindItsEnergyIsInfinite) {
   request.vehicle.wing = Wing{.airspeed_mps = 10};
   request.wind.layers = {{-kInfinity, {3, 0, 0}}, {110, {11, 0, 0}}, {150, {12, 0, 0}}};
   EXPECT_EQ(flown_energy(route, request, SimplePower()), kInfinity);
-  EXPECT_EQ(leg_energy(route.leg(0), request, SimplePower()), kInfinity);
+  EXPECT_EQ(leg_energy(route.leg(0), 0, request, SimplePower()), kInfinity);
   EXPECT_EQ(flown_time(route, request), kInfinity);
 }
 

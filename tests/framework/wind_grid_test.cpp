@@ -136,13 +136,13 @@ TEST(WindGrid, EnergyAddsUpAcrossBorders) {
     request.vehicle.wing.reset();
     const Vec3 from = random.in(kVolume);
     const Vec3 to = random.in(kVolume);
-    const double whole = leg_energy(Leg::straight(from, to), request, power);
+    const double whole = leg_energy(Leg::straight(from, to), 0, request, power);
     double sum = 0;
     constexpr int kPieces = 400;
     for (int k = 0; k < kPieces; ++k) {
       const Leg piece = Leg::straight(from + double(k) / kPieces * (to - from),
                                       from + (k + 1.0) / kPieces * (to - from));
-      sum += leg_energy(piece, request, power);
+      sum += leg_energy(piece, 0, request, power);
     }
     EXPECT_NEAR(whole, sum, 1e-9 * sum);
   }

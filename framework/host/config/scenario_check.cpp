@@ -173,6 +173,40 @@ void check_body(Checker& checker, const ScenarioFile& scenario, const Value& tre
     check(scenario.vehicle.body->parts[i], parts->items[i], item("vehicle.body.parts", i));
   }
 }
+
+void check_time(Checker& checker, const std::string& text, const Location& where,
+                const std::string& key) {
+  if (!formats::parse_iso_time(text)) {
+    checker.problem(where, key,
+                    "expected a time such as 2026-05-01T10:00:00Z, found '" + text + "'");
+  }
+}
+
+/// One after another, from the start on.
+void check_wind_hours(Checker& checker, const ScenarioFile& scenario, const Value& tree) {
+  // NaN, which nothing is before or after, where the time is refused.
+  const auto time_of = [](const std::string& text) {
+    return formats::parse_iso_time(text).value_or(std::nan(""));
+  };
+  const std::vector<WindHourEntry>& hours = scenario.wind.hours;
+  for (std::size_t i = 0; i < hours.size(); ++i) {
+    const std::string key = item("wind.hours", i) + ".from_time";
+    const Location where = place_of(tree, key);
+    check_time(checker, hours[i].from_time, where, key);
+    const double from = time_of(hours[i].from_time);
+    if (i > 0 && from <= time_of(hours[i - 1].from_time)) {
+      checker.problem(where, key, "expected hours in ascending order of from_time");
+    }
+    if (i == 0 && !scenario.start_time) {
+      checker.problem(where, key, "winds by the hour need the scenario's start_time");
+    }
+    if (i == 0 && scenario.start_time && from > time_of(*scenario.start_time)) {
+      checker.problem(where, key,
+                      "no wind is given from start_time to here: the first wind begins at "
+                      "start_time or before");
+    }
+  }
+}
 }  // namespace
 
 void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree) {
@@ -194,10 +228,9 @@ void check_scenario(Checker& checker, ScenarioFile& scenario, const Value& tree)
                          place_of(*tree.find("task"), task.plugin), "task." + task.plugin, "task");
   }
   check_body(checker, scenario, tree);
-  if (scenario.start_time && !formats::parse_iso_time(*scenario.start_time)) {
-    checker.problem(
-        place_of(tree, "start_time"), "start_time",
-        "expected a time such as 2026-05-01T10:00:00Z, found '" + *scenario.start_time + "'");
+  if (scenario.start_time) {
+    check_time(checker, *scenario.start_time, place_of(tree, "start_time"), "start_time");
   }
+  check_wind_hours(checker, scenario, tree);
 }
 }  // namespace altiplan::host

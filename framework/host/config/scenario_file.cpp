@@ -174,7 +174,7 @@ void WindLayerEntry::describe(Fields& f) {
   f.check(from_deg.has_value() != !grid.text.empty(), "expected from_deg and speed_mps, or grid");
 }
 
-void WindEntry::describe(Fields& f) {
+void WindLayersEntry::describe(Fields& f) {
   WindKindEntry::describe(f);
   f("layers", layers).min_items(1).doc("alternatively: wind by layers of height, from the lowest");
   f.check(int(from_deg.has_value()) + int(!layers.empty()) + int(!grid.text.empty()) <= 1,
@@ -183,6 +183,22 @@ void WindEntry::describe(Fields& f) {
     f.check(layers[i - 1].above_m < layers[i].above_m,
             "expected layers in ascending order of above_m");
   }
+}
+
+void WindHourEntry::describe(Fields& f) {
+  f("from_time", from_time)
+      .required()
+      .doc("UTC, ISO 8601: from when on this wind blows, until the next one's");
+  WindLayersEntry::describe(f);
+  f.check(is_given(), "expected from_deg and speed_mps, or layers, or grid");
+}
+
+void WindEntry::describe(Fields& f) {
+  WindLayersEntry::describe(f);
+  f("hours", hours)
+      .min_items(1)
+      .doc("alternatively: winds one after another, the first from start_time or before");
+  f.check(hours.empty() || !is_given(), "expected hours alone, or one wind");
 }
 
 void CylinderEntry::describe(Fields& f) {

@@ -137,9 +137,23 @@ struct WindLayerEntry : WindKindEntry {
 };
 
 /// At every height, or `{layers: […]}`.
-struct WindEntry : WindKindEntry {
+struct WindLayersEntry : WindKindEntry {
   std::vector<WindLayerEntry> layers;
   bool blows() const { return speed_mps.value_or(0) > 0 || !layers.empty() || !grid.text.empty(); }
+  bool is_given() const { return from_deg || !layers.empty() || !grid.text.empty(); }
+  void describe(Fields& f);
+};
+
+/// From a time on.
+struct WindHourEntry : WindLayersEntry {
+  std::string from_time;
+  void describe(Fields& f);
+};
+
+/// At all times, or `{hours: […]}`.
+struct WindEntry : WindLayersEntry {
+  std::vector<WindHourEntry> hours;
+  bool blows() const { return WindLayersEntry::blows() || !hours.empty(); }
   void describe(Fields& f);
 };
 

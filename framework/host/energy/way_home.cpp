@@ -36,8 +36,10 @@ double energy_home(const Vec3& from, const Vec3& home, const Request& request) {
   const double rate = rise > 0 ? vehicle.climb_mps : vehicle.sink_mps;
   const Eigen::Vector2d way = (home - from).head<2>();
   const Vec3 level_home(home.x(), home.y(), from.z());
-  // In wind that varies along the way, the strongest of it ahead.
-  const Eigen::Vector2d wind = request.wind.crossings(from, level_home).empty()
+  // In wind that varies along the way or with the hour, the strongest of it ahead.
+  const bool is_one =
+      request.wind.changes.empty() && request.wind.crossings(from, level_home).empty();
+  const Eigen::Vector2d wind = is_one
                                    ? Eigen::Vector2d(request.wind.at(from).head<2>())
                                    : Eigen::Vector2d(-request.wind.max_speed() * way.normalized());
   const double level_s = time_home(way, 0, wind, request.air_speed(), kInfinity);

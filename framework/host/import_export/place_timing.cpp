@@ -39,7 +39,7 @@ std::vector<PlaceTiming> timing_of(const std::vector<MissionPlace>& places,
     const Leg leg = joined.route.leg(i);
     PlaceTiming& place = timing[joined.places[i + 1]];
     if (vehicle.speed_near.empty()) {
-      time_s += leg_duration(leg, request);
+      time_s += leg_duration(leg, request.start.time_s + time_s, request);
     } else {
       const double speed = slowest(leg, *request.world, vehicle);
       place.speed_mps = place.speed_mps > 0 ? std::min(place.speed_mps, speed) : speed;

@@ -71,10 +71,12 @@ void check_via_course(const Route& route, const Request& request, const Goal& vi
   Request to = request;
   to.goal = via;
   double min_angle = kInfinity;
-  std::optional<Approach> before = request.before_start(route.front());
+  Arrival reached{request.before_start(route.front()), request.start.time_s};
   for (std::size_t i = 1; i < route.size() && (i <= first || via.reached_at(route[i])); ++i) {
-    before = onward(before, route.leg(i - 1));
+    reached = reached.onward(route.leg(i - 1), request);
     if (i >= first) {
+      to.wind = request.wind.in_force(reached.time_s);
+      const std::optional<Approach>& before = reached.before;
       const Vec3 arrival = before ? before->heading_at(route[i]) : Vec3::Zero();
       const auto course = to.arrival_course(route[i]);
       const double off = course ? turn_angle_horizontal(arrival, *course) : 0;
@@ -106,21 +108,19 @@ CheckResult check_in_time(const Route& route, const Request& request) {
   };
   CheckResult result = check(route, between(kInfinity, -kInfinity));
   std::vector<Violation>& found = result.violations;
-  std::optional<Approach> before = request.before_start(route.front());
-  double time_s = request.start.time_s;
+  Arrival arrival{request.before_start(route.front()), request.start.time_s};
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
-    constexpr double kRounding = 1e-6;  // seconds
     const Leg leg = route.leg(i);
-    const double end_s = time_s + leg_duration(leg, request);
-    const Request during = std::isfinite(end_s) ? between(time_s - kRounding, end_s + kRounding)
-                                                : between(-kInfinity, kInfinity);
-    for (Violation& violation : leg_violations(before, leg, during, i)) {
+    const Arrival next = arrival.onward(leg, request);
+    const Request during = std::isfinite(next.time_s) ? between(arrival.time_s - kTimeTolerance,
+                                                                next.time_s + kTimeTolerance)
+                                                      : between(-kInfinity, kInfinity);
+    for (Violation& violation : leg_violations(arrival, leg, during, i)) {
       if (std::find(found.begin(), found.end(), violation) == found.end()) {
         found.push_back(std::move(violation));
       }
     }
-    before = onward(before, leg);
-    time_s = end_s;
+    arrival = next;
   }
   return result;
 }

@@ -20,7 +20,7 @@
 #include "host/mission/scale_note.hpp"
 #include "host/mission/vehicle.hpp"
 #include "host/mission/volume.hpp"
-#include "host/mission/wind_grid.hpp"
+#include "host/mission/winds.hpp"
 
 namespace altiplan::host {
 namespace {
@@ -440,45 +440,6 @@ void add_task(const Config& config, Mission& mission, const Calling& calling) {
 }
 }  // namespace
 
-namespace {
-/// One layer of wind; `key` is that of its entry in the scenario.
-Wind::Layer layer_of(const WindKindEntry& entry, double above_m, const std::string& key,
-                     const Config& config, Mission& mission) {
-  if (entry.grid.text.empty()) {
-    return {above_m, -*entry.speed_mps * unit_heading(radians(90 - *entry.from_deg))};
-  }
-  const Site& site = mission.site;
-  try {
-    const WindFile file = read_wind_grid(entry.grid.text, entry.bands, site.frame, site.volume);
-    // A forecast is of every third hour, or of every one.
-    constexpr double kNear = 1.5 * 3600;
-    if (file.valid_s && site.has_start_time &&
-        std::abs(*file.valid_s - site.start_time_s) > kNear) {
-      mission.warnings.push_back(key + ".grid: the wind is of " + formats::iso_time(*file.valid_s) +
-                                 ", the flight starts at " + formats::iso_time(site.start_time_s) +
-                                 ": winds of other hours are not modelled");
-    }
-    return {above_m, {0, 0, 0}, file.grid};
-  } catch (const Error& error) {
-    throw ConfigError(place_of(config.scenario_tree, key + ".grid"), key + ".grid", error.what());
-  }
-}
-
-Wind wind_over(const Config& config, Mission& mission) {
-  const WindEntry& entry = config.scenario.wind;
-  Wind wind;
-  const bool blows = entry.speed_mps.value_or(0) > 0 || !entry.grid.text.empty();
-  if (blows) {
-    wind.layers.push_back(layer_of(entry, -kInfinity, "wind", config, mission));
-  }
-  for (std::size_t i = 0; i < entry.layers.size(); ++i) {
-    const WindLayerEntry& layer = entry.layers[i];
-    wind.layers.push_back(layer_of(layer, layer.above_m, item("wind.layers", i), config, mission));
-  }
-  return wind;
-}
-}  // namespace
-
 TaskOrder order_of_task(const Mission& mission, Budget budget) {
   Request request = mission.request;
   request.budget = std::move(budget);
@@ -550,7 +511,7 @@ Mission build_mission(const Config& config, int threads, const Calling& given,
     expect_within(config, mission);
     expect_in_frame(config, mission);
   }
-  request.wind = site.wind = wind_over(config, mission);
+  request.wind = site.wind = read_winds(config, mission);
   if (const auto heading = heading_of(file.start.heading_deg)) {
     request.start.velocity = request.ground_velocity({request.start.position, *heading});
   }

@@ -62,6 +62,45 @@ Vec3 velocity_at_end(const Route& route, double speed) {
   return Vec3::Zero();
 }
 
+/// The part of a route that is flown before the wind changes, and the vehicle's state at its end.
+struct FlownPart {
+  Route route;
+  State end;
+  bool is_all = true;
+};
+
+FlownPart flown_until(double until_s, const Route& route, const Request& request,
+                      const Request& then) {
+  FlownPart flown{Route{route.front()}, request.start};
+  State& end = flown.end;
+  for (std::size_t i = 0; i < route.leg_count(); ++i) {
+    const Leg leg = route.leg(i);
+    const double seconds = leg_duration(leg, request);
+    if (end.time_s + seconds <= until_s + kTimeTolerance) {
+      flown.route.push_back(leg);
+      end.time_s += seconds;
+      continue;
+    }
+    double share = 0;
+    for (double beyond = 1; (share + beyond) / 2 > share && (share + beyond) / 2 < beyond;) {
+      const double middle = (share + beyond) / 2;
+      const bool is_flown = end.time_s + leg_duration(leg.piece(0, middle), request) <= until_s;
+      (is_flown ? share : beyond) = middle;
+    }
+    if (share > 0) {
+      flown.route.push_back(leg.piece(0, share));
+    }
+    // A turn goes on with its heading through the air, a straight leg on its course.
+    const Vec3 course =
+        leg.turns() ? then.ground_velocity({flown.route.back(), leg.heading + share * leg.turn})
+                    : leg.track(0);
+    end = {until_s, flown.route.back(), course.normalized() * request.vehicle.speed_mps};
+    flown.is_all = false;
+    break;
+  }
+  return flown;
+}
+
 /// Index of the leg of the route that is nearest to p.
 std::size_t nearest_leg(const Route& route, const Vec3& p) {
   std::size_t nearest = 0;
@@ -113,15 +152,50 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytim
     if (part.status != PlanStatus::solved) {
       break;
     }
-    if (avoids_moving(request)) {
+    if (avoids_moving(request) || !request.wind.changes.empty()) {
       for (std::size_t leg = 0; leg < part.route.leg_count(); ++leg) {
-        request.start.time_s += leg_duration(part.route.leg(leg), request);
+        request.start.time_s += leg_duration(part.route.leg(leg), request.start.time_s, request);
       }
     }
     request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
     request.start.velocity = velocity_at_end(whole.route, request.vehicle.speed_mps);
     request.start.position = whole.route.back();
     request.start.loiter.reset();
+  }
+  return whole;
+}
+
+PlanResult plan_in_winds(const Request& given, const PlanPart& plan_part) {
+  if (given.wind.changes.empty()) {
+    return plan_part(given);
+  }
+  PlanResult whole;
+  Request request = given;
+  for (bool goes_on = true; goes_on;) {
+    const double until_s = given.wind.in_force_until(request.start.time_s);
+    request.wind = given.wind.in_force(request.start.time_s);
+    PlanResult part = plan_part(request);
+    add_counters(whole.counters, part.counters);
+    whole.budget_hit = whole.budget_hit || part.budget_hit;
+    whole.status = part.status;
+    whole.reason = part.reason;
+    whole.message = part.message;
+    goes_on = false;
+    if (part.status == PlanStatus::solved) {
+      Request then = request;
+      then.wind = given.wind.in_force(until_s);
+      FlownPart flown = flown_until(until_s, part.route, request, then);
+      goes_on = !flown.is_all;
+      whole.route.append(goes_on ? flown.route : part.route);
+      request.start = flown.end;
+      request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
+    }
+    if (request.start.time_s > given.start.time_s) {
+      whole.message += ", from " + request.place_text(request.start.position) +
+                       " on, where the wind "
+                       "changes " +
+                       std::to_string(request.start.time_s) + " s after the start";
+    }
   }
   return whole;
 }

@@ -75,7 +75,9 @@ class Run {
     bool is_anytime() const { return planner && planner->traits().anytime; }
     PlanPart part() const {
       return [this](const Request& request) {
-        return planner ? planner->plan(request) : roll_out(*local_planner, request);
+        return plan_in_winds(request, [this](const Request& in_one_wind) {
+          return planner ? planner->plan(in_one_wind) : roll_out(*local_planner, in_one_wind);
+        });
       };
     }
   };

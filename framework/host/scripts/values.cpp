@@ -55,6 +55,9 @@ Json vehicle_of(const Vehicle& vehicle) {
 }
 
 Json wind_of(const Wind& wind) {
+  if (!wind.changes.empty()) {
+    throw Error("wind that changes (wind.hours) is not known to plugins in Python");
+  }
   Json layers = Json::array();
   for (const Wind::Layer& layer : wind.layers) {
     if (layer.grid) {

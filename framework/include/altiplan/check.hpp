@@ -21,7 +21,8 @@ struct CheckResult {
 ALTIPLAN_API CheckResult check(const Route& route, const Request& request);
 
 /// True if the leg a–b, for a vehicle that reaches a by `before`, satisfies every constraint that
-/// depends on the leg alone (all but route length and the path-dependent parts of constraints).
+/// depends on the leg alone (all but route length and the path-dependent parts of constraints), in
+/// each wind of one that changes.
 ALTIPLAN_API bool leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
                          const Request& request);
 
@@ -62,6 +63,18 @@ ALTIPLAN_API const MovingObstacle* meets_moving(const Leg& leg, double time_s,
 ALTIPLAN_API std::vector<Violation> leg_violations(const std::optional<Approach>& before,
                                                    const Leg& leg, const Request& request,
                                                    std::size_t index);
+/// How a vehicle reaches a place, and when, in the time of request.start.
+struct ALTIPLAN_API Arrival {
+  std::optional<Approach> before;
+  double time_s = 0;
+
+  /// At the end of a leg from there: where the wind changes at the end of a turn, the heading
+  /// through the air stays, and the track over the ground turns.
+  Arrival onward(const Leg& leg, const Request& request) const;
+};
+/// The same, in the winds of the leg's time alone, of which a straight one may meet several.
+ALTIPLAN_API std::vector<Violation> leg_violations(const Arrival& arrival, const Leg& leg,
+                                                   const Request& request, std::size_t index);
 inline std::vector<Violation> leg_violations(const std::optional<Approach>& before, const Vec3& a,
                                              const Vec3& b, const Request& request,
                                              std::size_t index) {

@@ -59,8 +59,9 @@ ALTIPLAN_API void fly(const Route& route, const Request& request,
 ALTIPLAN_API double flown_time(const Route& route, const Request& request);
 /// Wh by a model of power; infinite where it knows none.
 ALTIPLAN_API double flown_energy(const Route& route, const Request& request, const Power& power);
-/// Of one leg at its steady speed, without stops.
-ALTIPLAN_API double leg_energy(const Leg& leg, const Request& request, const Power& power);
+/// Of one leg at its steady speed, without stops, from a time, that of request.start.
+ALTIPLAN_API double leg_energy(const Leg& leg, double time_s, const Request& request,
+                               const Power& power);
 /// Of a track of times (s) and places.
 ALTIPLAN_API double track_energy(const std::vector<std::pair<double, Vec3>>& track,
                                  const Request& request, const Power& power);

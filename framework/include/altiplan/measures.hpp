@@ -35,6 +35,8 @@ ALTIPLAN_API double leg_clearance(const Environment& environment, const Vec3& a,
 /// Seconds from a to b at the vehicle's speed profile.
 ALTIPLAN_API double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a,
                                  const Vec3& b);
-/// Seconds of a leg of any kind: of an aeroplane, or in wind, at its airspeed.
+/// Seconds of a leg of any kind: of an aeroplane, or in wind, at its airspeed. It begins at
+/// `time_s`, in the time of request.start, or at the start.
+ALTIPLAN_API double leg_duration(const Leg& leg, double time_s, const Request& request);
 ALTIPLAN_API double leg_duration(const Leg& leg, const Request& request);
 }  // namespace altiplan

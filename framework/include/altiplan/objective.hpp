@@ -20,7 +20,7 @@ struct Request;
 ///  3. bound is consistent: bound(a, a) = 0 and bound(a, c) <= cost(a-b) + bound(b, c) for all
 ///     places in the request's volume and all times. So it is at most the cost of any route.
 ///  4. cost depends on nothing that traits denies: the place (a leg moved elsewhere costs the
-///     same), the heading (so does the leg flown backwards), the time.
+///     same), the heading (so does the leg flown backwards), the time (in an unchanging wind).
 ///  5. costs are at least 0. Without the trait `waypoints` their sum is that of cost over the legs,
 ///     and what joining them takes (stops at corners), which no search from leg to leg sees; with
 ///     it cost and bound serve those who look at single legs, and tell nothing of a route but that

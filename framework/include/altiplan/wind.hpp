@@ -32,7 +32,12 @@ class ALTIPLAN_API WindGrid {
   double max_speed_ = 0;
 };
 
-/// Horizontal wind, constant within layers of height, and there within the cells of a grid, if any.
+/// Seconds: sums of durations meet a change of the wind but for rounding.
+inline constexpr double kTimeTolerance = 1e-6;
+
+/// Horizontal wind, constant within layers of height, and there within the cells of a grid, if any;
+/// other layers may take their place at times. Queries of places alone tell of the layers before
+/// the first change.
 struct ALTIPLAN_API Wind {
   struct Layer {
     double above_m = -kInfinity;  ///< lower border, metres above sea level
@@ -40,12 +45,23 @@ struct ALTIPLAN_API Wind {
     std::shared_ptr<const WindGrid> grid{};
     double max_speed() const;
   };
-  std::vector<Layer> layers;  ///< by ascending border; below the first border there is no wind
+  /// The layers from a time on, in seconds, that of request.start.
+  struct Change {
+    double from_s = 0;
+    std::vector<Layer> layers;
+  };
+  std::vector<Layer> layers;      ///< by ascending border; below the first border there is no wind
+  std::vector<Change> changes{};  ///< by ascending time
 
-  bool is_calm() const { return layers.empty(); }
+  bool is_calm() const { return layers.empty() && changes.empty(); }
+  /// The wind at a time, as one that does not change; within the tolerance before a change, that
+  /// after it.
+  Wind in_force(double time_s) const;
+  /// When that wind ends; infinite without a change later.
+  double in_force_until(double time_s) const;
   /// Velocity of the air at a place.
   Vec3 at(const Vec3& p) const;
-  /// The greatest speed at any place.
+  /// The greatest speed at any place and time.
   double max_speed() const;
   /// Fractions of a straight leg at which it crosses a border, ascending, without 0 and 1.
   std::vector<double> crossings(const Vec3& from, const Vec3& to) const;

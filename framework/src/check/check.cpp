@@ -8,24 +8,46 @@
 #include "altiplan/drawing.hpp"
 #include "altiplan/energy.hpp"
 #include "altiplan/flown_route.hpp"
+#include "altiplan/measures.hpp"
 #include "altiplan/total_limit.hpp"
 #include "leg_judge.hpp"
 #include "moving.hpp"
+#include "uniform_motion.hpp"
 #include "words.hpp"
 
 namespace altiplan {
+namespace {
+/// Calls `judge(request)` in each wind: a leg of which no time is known may be flown in any.
+template <class Judge>
+void in_every_wind(const Request& request, const Judge& judge) {
+  if (request.wind.changes.empty()) {
+    judge(request);
+    return;
+  }
+  Request then = request;
+  then.wind = request.wind.in_force(-kInfinity);
+  judge(then);
+  for (const Wind::Change& change : request.wind.changes) {
+    then.wind = request.wind.in_force(change.from_s);
+    judge(then);
+  }
+}
+}  // namespace
+
 bool leg_ok(const std::optional<Approach>& before, const Vec3& a, const Vec3& b,
             const Request& request) {
   bool ok = true;
   const auto note = [&](const auto&) { return ok = false; };
-  LegJudge(before, a, b, request, 0, note).judge();
+  in_every_wind(request,
+                [&](const Request& then) { LegJudge(before, a, b, then, 0, note).judge(); });
   return ok;
 }
 
 bool leg_ok(const std::optional<Approach>& before, const Leg& leg, const Request& request) {
   bool ok = true;
   const auto note = [&](const auto&) { return ok = false; };
-  LegJudge(before, leg, request, 0, note).judge();
+  in_every_wind(request,
+                [&](const Request& then) { LegJudge(before, leg, then, 0, note).judge(); });
   return ok;
 }
 
@@ -41,11 +63,72 @@ std::vector<Violation> leg_violations(const std::optional<Approach>& before, con
                                       const Request& request, std::size_t index) {
   std::vector<Violation> all;
   const auto add = [&](const auto& violation) {
-    all.push_back(violation());
+    Violation found = violation();
+    const bool is_one_wind = request.wind.changes.empty();
+    if (is_one_wind || std::find(all.begin(), all.end(), found) == all.end()) {
+      all.push_back(std::move(found));
+    }
     return true;
   };
-  LegJudge(before, leg, request, index, add).judge();
+  in_every_wind(request,
+                [&](const Request& then) { LegJudge(before, leg, then, index, add).judge(); });
   return all;
+}
+
+namespace {
+/// True of rules that depend on the wind of the moment: what a leg meets, not where it leads.
+bool is_by_wind(const Violation& violation) {
+  return violation.constraint == "wind" || violation.constraint == "climb_angle" ||
+         violation.constraint == "body";
+}
+}  // namespace
+
+std::vector<Violation> leg_violations(const Arrival& arrival, const Leg& leg,
+                                      const Request& request, std::size_t index) {
+  const auto& [before, time_s] = arrival;
+  if (request.wind.changes.empty()) {
+    return leg_violations(before, leg, request, index);
+  }
+  Request now = request;
+  now.wind = request.wind.in_force(time_s);
+  std::vector<Violation> found = leg_violations(before, leg, now, index);
+  const double change_s = request.wind.in_force_until(time_s);
+  if (time_s + leg_duration(leg, time_s, request) <= change_s + kTimeTolerance) {
+    return found;
+  }
+  if (leg.turns()) {
+    found.push_back({"wind", index, 0, 0,
+                     "the turn is flown while the wind changes, " + fixed(change_s) +
+                         " s after the start: cut it there"});
+    return found;
+  }
+  found.erase(std::remove_if(found.begin(), found.end(), is_by_wind), found.end());
+  std::optional<Approach> so_far = before;
+  in_uniform_motion(
+      leg, time_s, request, [&](const Vec3& a, double from_s, const Vec3& b, double until_s) {
+        const Leg part = leg.waits() ? Leg::hold(a, until_s - from_s) : Leg::straight(a, b);
+        now.wind = request.wind.in_force(from_s);
+        for (Violation& violation : leg_violations(so_far, part, now, index)) {
+          if (is_by_wind(violation)) {
+            found.push_back(std::move(violation));
+          }
+        }
+        so_far = altiplan::onward(so_far, part);
+        return true;
+      });
+  return found;
+}
+
+Arrival Arrival::onward(const Leg& leg, const Request& request) const {
+  Arrival next{altiplan::onward(before, leg), time_s + leg_duration(leg, time_s, request)};
+  const bool changes = request.wind.in_force_until(time_s) <= next.time_s + kTimeTolerance;
+  if (changes && leg.turns() && leg.has_heading()) {
+    Request then = request;
+    then.wind = request.wind.in_force(next.time_s);
+    next.before = Approach(leg.to - then.ground_velocity({leg.to, leg.heading + leg.turn}));
+    next.before->turning = true;
+  }
+  return next;
 }
 
 namespace {
@@ -132,7 +215,7 @@ CheckResult check(const Route& route, const Request& request) {
     return result;
   }
   check_ends(route, request, found);
-  std::optional<Approach> before = request.before_start(route.front());
+  Arrival arrival{request.before_start(route.front()), request.start.time_s};
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
     if (const double gap = (leg.from - route[i]).norm(); !(gap <= kLengthTolerance)) {
@@ -140,15 +223,16 @@ CheckResult check(const Route& route, const Request& request) {
                        "the leg begins " + distance_text(gap) + " m from the end of the one before",
                        "", "m"});
     }
-    for (Violation& violation : leg_violations(before, leg, request, i)) {
+    for (Violation& violation : leg_violations(arrival, leg, request, i)) {
       found.push_back(std::move(violation));
     }
-    if (request.objective && !std::isfinite(cost_of(leg, request))) {
+    const double after_s = arrival.time_s - request.start.time_s;
+    if (request.objective && !std::isfinite(request.objective->cost(leg, after_s, request))) {
       found.push_back({"objective", i, kInfinity, kInfinity,
                        "the objective has no cost for the leg: part of it lies where no value is "
                        "given"});
     }
-    before = onward(before, leg);
+    arrival = arrival.onward(leg, request);
   }
   if (request.objective && request.objective->traits().waypoints &&
       !std::isfinite(cost_of(route, request)) &&
@@ -157,14 +241,17 @@ CheckResult check(const Route& route, const Request& request) {
     found.push_back({"objective", 0, kInfinity, kInfinity,
                      "the objective has no cost for the route as a whole"});
   }
-  if (const auto course = request.arrival_course(route.back()); course && before) {
-    const Vec3 arrival = before->heading_at(route.back());
+  Request then = request;
+  then.wind = request.wind.in_force(arrival.time_s);
+  const std::optional<Approach>& before = arrival.before;
+  if (const auto course = then.arrival_course(route.back()); course && before) {
+    const Vec3 heading = before->heading_at(route.back());
     // On a border of layers of wind, that of the last leg may be the one below.
     const Vec3 below = route.back() - Vec3(0, 0, kLengthTolerance);
-    const Vec3 other = *request.arrival_course(below);
+    const Vec3 other = *then.arrival_course(below);
     const bool is_other =
-        turn_angle_horizontal(arrival, other) < turn_angle_horizontal(arrival, *course);
-    check_course(arrival, is_other ? other : *course, "goal_heading", route.size() - 1,
+        turn_angle_horizontal(heading, other) < turn_angle_horizontal(heading, *course);
+    check_course(heading, is_other ? other : *course, "goal_heading", route.size() - 1,
                  "the angle between the course on arrival and the goal's", found);
   }
   for (Violation& violation : moving_violations(route, request)) {
@@ -224,9 +311,9 @@ std::string point_problem(const Vec3& p, const Request& request) {
 
 namespace {
 std::string loiter_problem(const Vec3& centre, const Loiter& loiter, const Request& request) {
-  const double wind = request.wind.is_uniform(loiter.circle(centre).box())
-                          ? request.wind.at(centre).norm()
-                          : request.wind.max_speed();
+  const bool is_one =
+      request.wind.changes.empty() && request.wind.is_uniform(loiter.circle(centre).box());
+  const double wind = is_one ? request.wind.at(centre).norm() : request.wind.max_speed();
   const std::string which = "circle of radius " + fixed(loiter.radius) + " m around " +
                             place(centre) + " cannot be flown: ";
   if (wind >= request.air_speed()) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "altiplan/energy.hpp"
 #include "altiplan/measures.hpp"
@@ -102,10 +103,10 @@ struct Stretch {
   double top_mps() const { return metres > 0 ? metres / phase.seconds : 0; }
 };
 
-std::vector<Stretch> stretches_of(const Leg& leg, const Request& request) {
+std::vector<Stretch> stretches_of(const Leg& leg, double time_s, const Request& request) {
   std::vector<Stretch> all;
   if (leg.turns() || leg.waits()) {
-    const double seconds = leg_duration(leg, request);
+    const double seconds = leg_duration(leg, time_s, request);
     const double speed = leg.turns() ? leg.air_length() / seconds : 0;
     all.push_back({{leg.from, leg.to, speed, speed, seconds,
                     leg.turns() && request.vehicle.wing ? leg.radius : 0},
@@ -113,13 +114,14 @@ std::vector<Stretch> stretches_of(const Leg& leg, const Request& request) {
                    false,
                    leg.waits()});
   } else {
-    in_uniform_motion(leg, 0, request, [&](const Vec3& a, double t0, const Vec3& b, double t1) {
-      const double metres = (b - a).norm();
-      const double seconds = t1 - t0;
-      const double speed = seconds > 0 ? metres / seconds : 0;
-      all.push_back({{a, b, speed, speed, seconds, 0}, metres, false, false});
-      return std::isfinite(seconds);  // the vehicle gets no farther
-    });
+    in_uniform_motion(leg, time_s, request,
+                      [&](const Vec3& a, double t0, const Vec3& b, double t1) {
+                        const double metres = (b - a).norm();
+                        const double seconds = t1 - t0;
+                        const double speed = seconds > 0 ? metres / seconds : 0;
+                        all.push_back({{a, b, speed, speed, seconds, 0}, metres, false, false});
+                        return std::isfinite(seconds);  // the vehicle gets no farther
+                      });
   }
   if (!all.empty()) {
     all.back().ends_leg = true;
@@ -146,8 +148,8 @@ class Accelerated {
     for (std::size_t i = 0; i < route.leg_count(); ++i) {
       const Leg leg = route.leg(i);
       const double passes = i > 0 ? passing_speed(route.leg(i - 1), leg, acceleration_) : 0;
-      for (Stretch& stretch : stretches_of(leg, request)) {
-        if (leg.turns()) {  // not faster than its radius allows
+      for (Stretch& stretch : stretches_of(leg, 0, request)) {  // no wind changes its speeds
+        if (leg.turns()) {                                      // not faster than its radius allows
           const double maximum = std::sqrt(acceleration_.mps2 * leg.radius);
           stretch.phase.seconds = std::max(stretch.phase.seconds, stretch.metres / maximum);
         }
@@ -237,17 +239,18 @@ std::pair<FlownPhase, FlownPhase> cut(const FlownPhase& phase, double share) {
 }
 
 /// Of steady flight at each moment: what it takes to accelerate is got back in braking.
-double energy_of(const FlownPhase& phase, const Request& request, const Power& power) {
+double energy_of(const FlownPhase& phase, const Wind& wind, const Request& request,
+                 const Power& power) {
   if (phase.seconds == 0 || phase.seconds == kInfinity) {
     return phase.seconds;  // infinite where the wind keeps the vehicle from its way
   }
   const Vec3 way = phase.to - phase.from;
   const double metres = way.norm();
   if (phase.turn_radius_m == 0 && metres > 0) {
-    const std::vector<double> borders = request.wind.crossings(phase.from, phase.to);
+    const std::vector<double> borders = wind.crossings(phase.from, phase.to);
     if (!borders.empty()) {
       const auto [first, rest] = cut(phase, borders[borders.size() / 2]);
-      return energy_of(first, request, power) + energy_of(rest, request, power);
+      return energy_of(first, wind, request, power) + energy_of(rest, wind, request, power);
     }
   }
   if (phase.turn_radius_m > 0) {
@@ -266,12 +269,41 @@ double energy_of(const FlownPhase& phase, const Request& request, const Power& p
         metres > 0 ? share * (phase.from_mps + speed) / (phase.from_mps + phase.to_mps) : 0;
     const Vec3 here = phase.from + along * way;
     const Vec3 ground = metres > 0 ? Vec3(way * (speed / metres)) : Vec3::Zero();
-    return power.watts(
-        {(ground - request.wind.at(here)).head<2>().norm(), ground.z(), 0, here.z()});
+    return power.watts({(ground - wind.at(here)).head<2>().norm(), ground.z(), 0, here.z()});
   };
   // Nothing changes in level flight at one speed.
   const bool is_steady = phase.from_mps == phase.to_mps && way.z() == 0;
   return (is_steady ? watts(0.5) : integral(watts)) * phase.seconds / kSecondsPerHour;
+}
+
+/// The way flown in a time, as a share of a straight phase's.
+double share_flown(const FlownPhase& phase, double seconds) {
+  const double share = seconds / phase.seconds;
+  const double mps = phase.from_mps + share * (phase.to_mps - phase.from_mps);
+  const double sum = phase.from_mps + phase.to_mps;
+  return sum > 0 ? share * (phase.from_mps + mps) / sum : share;
+}
+
+/// Of a phase that begins at a time, in the winds of that time. In turns the power depends on none.
+double energy_of(FlownPhase phase, double time_s, const Request& request, const Power& power) {
+  if (request.wind.changes.empty() || phase.turn_radius_m > 0) {
+    return energy_of(phase, request.wind, request, power);
+  }
+  double wh = 0;
+  double left_s = request.wind.in_force_until(time_s) - time_s;
+  while (phase.seconds > left_s && std::isfinite(phase.seconds)) {
+    FlownPhase first = phase;
+    if ((phase.to - phase.from).norm() > 0) {
+      std::tie(first, phase) = cut(phase, share_flown(phase, left_s));
+    } else {
+      phase.seconds -= left_s;
+    }
+    first.seconds = left_s;
+    wh += energy_of(first, request.wind.in_force(time_s), request, power);
+    time_s += left_s;
+    left_s = request.wind.in_force_until(time_s) - time_s;
+  }
+  return wh + energy_of(phase, request.wind.in_force(time_s), request, power);
 }
 }  // namespace
 
@@ -282,9 +314,12 @@ void fly(const Route& route, const Request& request,
     Accelerated(legs, request).fly(use);
     return;
   }
+  const bool changes = !request.wind.changes.empty();
+  double time_s = request.start.time_s;
   for (std::size_t i = 0; i < legs.leg_count(); ++i) {
-    for (const Stretch& stretch : stretches_of(legs.leg(i), request)) {
+    for (const Stretch& stretch : stretches_of(legs.leg(i), changes ? time_s : 0, request)) {
       use(stretch.phase);
+      time_s += stretch.phase.seconds;
     }
   }
 }
@@ -297,14 +332,20 @@ double flown_time(const Route& route, const Request& request) {
 
 double flown_energy(const Route& route, const Request& request, const Power& power) {
   double wh = 0;
-  fly(route, request, [&](const FlownPhase& phase) { wh += energy_of(phase, request, power); });
+  double time_s = request.start.time_s;
+  fly(route, request, [&](const FlownPhase& phase) {
+    wh += energy_of(phase, time_s, request, power);
+    time_s += phase.seconds;
+  });
   return wh;
 }
 
-double leg_energy(const Leg& leg, const Request& request, const Power& power) {
+double leg_energy(const Leg& leg, double time_s, const Request& request, const Power& power) {
   double wh = 0;
-  for (const Stretch& stretch : stretches_of(leg, request)) {
-    wh += energy_of(stretch.phase, request, power);
+  for (const Stretch& stretch :
+       stretches_of(leg, request.wind.changes.empty() ? 0 : time_s, request)) {
+    wh += energy_of(stretch.phase, time_s, request, power);
+    time_s += stretch.phase.seconds;
   }
   return wh;
 }
@@ -317,7 +358,7 @@ double track_energy(const std::vector<std::pair<double, Vec3>>& track, const Req
     const auto& [after_s, to] = track[i];
     if (after_s > before_s) {
       const double speed = (to - from).norm() / (after_s - before_s);
-      wh += energy_of({from, to, speed, speed, after_s - before_s, 0}, request, power);
+      wh += energy_of({from, to, speed, speed, after_s - before_s, 0}, before_s, request, power);
     }
   }
   return wh;

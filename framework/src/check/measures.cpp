@@ -60,6 +60,10 @@ double leg_duration(const World& world, const Vehicle& vehicle, const Vec3& a, c
 }
 
 double leg_duration(const Leg& leg, const Request& request) {
+  return leg_duration(leg, request.start.time_s, request);
+}
+
+double leg_duration(const Leg& leg, double time_s, const Request& request) {
   if (leg.waits()) {
     return leg.hold_s;
   }
@@ -67,12 +71,13 @@ double leg_duration(const Leg& leg, const Request& request) {
     return std::max(leg.air_length() / request.air_speed(),
                     request.vehicle.climb_time(leg.to.z() - leg.from.z()));
   }
-  double seconds = 0;
-  in_uniform_motion(leg, 0, request, [&](const Vec3&, double, const Vec3&, double until_s) {
-    seconds = until_s;
+  const double from_s = request.wind.changes.empty() ? 0 : time_s;
+  double end_s = from_s;
+  in_uniform_motion(leg, from_s, request, [&](const Vec3&, double, const Vec3&, double until_s) {
+    end_s = until_s;
     return true;
   });
-  return seconds;
+  return end_s - from_s;
 }
 
 namespace {
@@ -90,7 +95,7 @@ void measure_legs(const Route& route, const Request& request, Measures& m) {
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
     climb = std::max(climb, std::abs(slope_of(leg)));
-    duration += leg_duration(leg, request);
+    duration += leg_duration(leg, request.start.time_s + duration, request);
   }
   m.max_climb_deg = degrees(climb);
   m.duration_s = duration;

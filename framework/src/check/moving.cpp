@@ -19,7 +19,7 @@ double needed_in_time(const Request& request) {
 bool turn_meets(const MovingObstacle& obstacle, const Leg& turn, double time_s,
                 const Request& request) {
   const double needed = needed_in_time(request);
-  const double duration = leg_duration(turn, request);
+  const double duration = leg_duration(turn, time_s, request);
   return !every_piece(turn, [&](const Piece& piece) {
     const double t0 = time_s + piece.begin * duration;
     const double t1 = time_s + piece.end * duration;
@@ -76,7 +76,7 @@ Nearest nearest_on(const MovingObstacle& obstacle, const Leg& leg, double time_s
     return nearest;
   }
   const Polyline points = leg.chords(kChordTolerance);  // equal times apart
-  const double step = leg_duration(leg, request) / double(points.size() - 1);
+  const double step = leg_duration(leg, time_s, request) / double(points.size() - 1);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     look(points[i], time_s + double(i) * step, points[i + 1], time_s + double(i + 1) * step);
   }
@@ -117,7 +117,7 @@ std::vector<Violation> moving_violations(const Route& route, const Request& requ
                            fixed(needed) + " m",
                        "", "m"});
     }
-    time_s += leg_duration(leg, request);
+    time_s += leg_duration(leg, time_s, request);
   }
   return found;
 }

@@ -57,13 +57,13 @@ std::vector<double> Objective::costs(const Route& route, const Request& request)
 }
 
 double Objective::legs_cost(const Route& route, const Request& request) const {
-  const bool in_time = traits().time;
+  const bool in_time = traits().time || !request.wind.changes.empty();
   double sum = 0;
   double time_s = 0;
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);
     sum += cost(leg, time_s, request);
-    time_s += in_time ? leg_duration(leg, request) : 0;
+    time_s += in_time ? leg_duration(leg, request.start.time_s + time_s, request) : 0;
   }
   return sum;
 }

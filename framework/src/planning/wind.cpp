@@ -54,10 +54,35 @@ Vec3 Wind::at(const Vec3& p) const {
 
 double Wind::max_speed() const {
   double speed = 0;
-  for (const Layer& layer : layers) {
-    speed = std::max(speed, layer.max_speed());
+  const auto take = [&](const std::vector<Layer>& some) {
+    for (const Layer& layer : some) {
+      speed = std::max(speed, layer.max_speed());
+    }
+  };
+  take(layers);
+  for (const Change& change : changes) {
+    take(change.layers);
   }
   return speed;
+}
+
+Wind Wind::in_force(double time_s) const {
+  Wind wind{layers, {}};
+  for (const Change& change : changes) {
+    if (change.from_s <= time_s + kTimeTolerance) {
+      wind.layers = change.layers;
+    }
+  }
+  return wind;
+}
+
+double Wind::in_force_until(double time_s) const {
+  for (const Change& change : changes) {
+    if (change.from_s > time_s + kTimeTolerance) {
+      return change.from_s;
+    }
+  }
+  return kInfinity;
 }
 
 std::vector<double> Wind::crossings(const Vec3& from, const Vec3& to) const {

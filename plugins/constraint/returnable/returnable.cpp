@@ -77,7 +77,7 @@ class FlightEnergy final : public Objective {
 
  private:
   double do_cost(const Leg& leg, double, const Request& request) const override {
-    return leg_energy(leg, request, *power_);
+    return leg_energy(leg, 0, request, *power_);
   }
   std::vector<double> do_costs(const Route& route, const Request& request) const override {
     return {std::max(legs_cost(route, request), flown_energy(route, request, *power_))};

@@ -29,8 +29,8 @@ class FlightEnergy final : public Objective {
   /// Of a copter in wind, times its fastest speed over the ground.
   static constexpr double kAirspeeds = 3;
 
-  double do_cost(const Leg& leg, double, const Request& request) const override {
-    return leg_energy(leg, request, *power_);
+  double do_cost(const Leg& leg, double time_s, const Request& request) const override {
+    return leg_energy(leg, request.start.time_s + time_s, request, *power_);
   }
 
   std::vector<double> do_costs(const Route& route, const Request& request) const override {

@@ -55,6 +55,9 @@ Ask asked(const Sampled& sampled, const Site& site, const World& world) {
     if (site.wind.is_calm()) {
       throw ParameterError("of", "needs wind, and the scenario has none");
     }
+    if (!site.wind.changes.empty()) {
+      throw ParameterError("of", "knows one wind, and the scenario's changes");
+    }
     return [&](const Vec3& p) { return std::optional(site.wind.at(p).norm()); };
   }
   if (!world.has_ground()) {

@@ -30,17 +30,22 @@ class FlightTime final : public Objective {
   FlightTime(const Params& params, const Site&) : params_(params) {}
 
  private:
-  double do_cost(const Leg& leg, double, const Request& request) const override {
+  double do_cost(const Leg& leg, double after_s, const Request& request) const override {
+    const double time_s = request.start.time_s + after_s;
+    if (leg.waits()) {
+      return leg.hold_s * share_above(leg.from.z(), leg.to.z());
+    }
     if (request.vehicle.wing) {
       // Along a turn the rate of climb is constant, along a straight leg in each layer of wind.
-      return leg.turns() ? leg_duration(leg, request) * share_above(leg.from.z(), leg.to.z())
-                         : above(leg.from, leg.to, request);
+      return leg.turns()
+                 ? leg_duration(leg, time_s, request) * share_above(leg.from.z(), leg.to.z())
+                 : above(leg.from, leg.to, time_s, request);
     }
     const std::vector<Vec3> points =
         leg.turns() ? leg.chords(kTolerance) : std::vector<Vec3>{leg.from, leg.to};
     double sum = 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
-      sum += above(points[i - 1], points[i], request);
+      sum += above(points[i - 1], points[i], time_s, request);
     }
     return sum;
   }
@@ -96,17 +101,21 @@ class FlightTime final : public Objective {
   /// Near obstacles, and in layers of wind, the speed depends on the place.
   Traits do_traits() const override { return {.place = true, .heading = true}; }
 
-  /// Seconds of a straight leg, or of its part above the height.
-  double above(const Vec3& a, const Vec3& b, const Request& request) const {
+  /// Seconds of a straight leg that begins at a time, or of its part above the height.
+  double above(const Vec3& a, const Vec3& b, double time_s, const Request& request) const {
     const double share = share_above(a.z(), b.z());
     if (share == 0) {
       return 0;
     }
-    const Vec3 crossing = a.z() > b.z() ? a + share * (b - a) : b + share * (a - b);
-    const Leg part = share == 1      ? Leg::straight(a, b)
-                     : a.z() > b.z() ? Leg::straight(a, crossing)
-                                     : Leg::straight(crossing, b);
-    return leg_duration(part, request);
+    if (share == 1) {
+      return leg_duration(Leg::straight(a, b), time_s, request);
+    }
+    if (a.z() > b.z()) {
+      return leg_duration(Leg::straight(a, a + share * (b - a)), time_s, request);
+    }
+    const Vec3 crossing = b + share * (a - b);
+    const double below_s = leg_duration(Leg::straight(a, crossing), time_s, request);
+    return leg_duration(Leg::straight(crossing, b), time_s + below_s, request);
   }
 
   /// Of a change of height at a constant rate, the part that counts.

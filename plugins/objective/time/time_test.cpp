@@ -39,6 +39,15 @@ TEST(TimeObjective, IsTheFlyingTimeAboveAHeight) {
   EXPECT_EQ(time->unit(), "s");
 }
 
+TEST(TimeObjective, AWaitTakesItsTime) {
+  const Request request = empty_request();
+  EXPECT_EQ(make_objective("time")->cost(Leg::hold({0, 0, 100}, 60), 0, request), 60);
+  EXPECT_EQ(make_objective("time", "{above_m: 50}")->cost(Leg::hold({0, 0, 100}, 60), 0, request),
+            60);
+  EXPECT_EQ(make_objective("time", "{above_m: 200}")->cost(Leg::hold({0, 0, 100}, 60), 0, request),
+            0);
+}
+
 TEST(TimeObjective, TheBoundDivesBelowTheHeight) {
   const Request request = empty_request();
   const auto above = make_objective("time", "{above_m: 200}");

@@ -81,15 +81,18 @@ HomeField::LegCost HomeField::energy(const Request& request, std::shared_ptr<con
   if (!request.vehicle.speed_near.empty()) {
     throw Error("ways home are not known of a vehicle with speed_near");
   }
-  if (std::any_of(request.wind.layers.begin(), request.wind.layers.end(),
+  if (!request.wind.changes.empty() ||
+      std::any_of(request.wind.layers.begin(), request.wind.layers.end(),
                   [](const Wind::Layer& layer) { return layer.grid != nullptr; })) {
-    throw Error("ways home are not known in wind that differs from place to place (wind.grid)");
+    throw Error(
+        "ways home are not known in wind that differs from place to place (wind.grid) or "
+        "changes with the hour");
   }
   Request alone = request;  // with what the energy of a leg depends on
   alone.world = std::make_shared<const World>();
   alone.constraints.clear();
   return [alone, power = std::move(power)](const Vec3& a, const Vec3& b) {
-    return leg_energy(Leg::straight(a, b), alone, *power);
+    return leg_energy(Leg::straight(a, b), 0, alone, *power);
   };
 }
 

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""wind_hours_test.py PROGRAM SOURCES: winds one after another.
+
+`python3 wind_hours_test.py PROGRAM SOURCES WindHours.test_the_judge` runs one case."""
+import json
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import wind_flight
+
+PROGRAM, SOURCES = sys.argv[1:3]
+SCENARIO = """altiplan: 1
+environment:
+  - box: {min_m: [1500, 600, 0], max_m: [1700, 1400, 300]}
+  - box: {min_m: [3400, 200, 0], max_m: [3500, 1200, 300]}
+volume: {min_m: [0, 0, 0], max_m: [6000, 2000, 300]}
+vehicle: {radius_m: 2, wing: {airspeed_mps: 20, bank_deg: 30, climb_deg: 10, sink_deg: 10}}
+start_time: 2026-05-01T10:00:00Z
+start: {at_m: [100, 1000, 100], heading_deg: 90}
+goal: {at_m: [5900, 1000, 150]}
+wind: %s
+%s
+"""
+PIPELINE = """altiplan: 1
+scenario: s.yaml
+steps:
+  - plan: %s
+    within_s: 20
+%s
+"""
+
+
+def at(seconds):
+    return f"2026-05-01T10:{seconds // 60:02}:{seconds % 60:02}Z"
+
+
+def hours(*winds):
+    """Of (seconds after the start, m/s, direction)."""
+    return "{hours: [%s]}" % ", ".join("{from_time: %s, from_deg: %s, speed_mps: %s}" % (at(from_s), degrees, speed)
+                                       for from_s, speed, degrees in winds)
+
+
+class WindHours(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def altiplan(self, *arguments, code=0):
+        done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def files(self, wind, more="", planner="hybrid_astar", steps=""):
+        (self.folder / "s.yaml").write_text(SCENARIO % (wind, more))
+        (self.folder / "p.yaml").write_text(PIPELINE % (planner, steps))
+
+    def result(self):
+        self.altiplan("run", "p.yaml", "-o", "r.json")
+        return json.loads((self.folder / "r.json").read_text())["steps"][-1]
+
+    def test_the_judge(self):
+        """A straight leg with 5 m/s behind it for a minute, then 5 m/s ahead."""
+        self.files(hours((0, 5, 270), (60, 5, 90)), "objective: {time: {}}")
+        scenario = self.folder / "s.yaml"
+        scenario.write_text(scenario.read_text().replace("at_m: [100, 1000, 100]", "at_m: [100, 1900, 100]").replace(
+            "at_m: [5900, 1000, 150]", "at_m: [5900, 1900, 100]"))
+        (self.folder / "r.csv").write_text("x_m,y_m,z_m\n100,1900,100\n5900,1900,100\n")
+
+        def judged(code=0):
+            said = self.altiplan("check", "--route", "r.csv", "--scenario", "s.yaml", "--json", code=code)
+            return json.loads(said[:said.rindex("}") + 1])
+        self.assertAlmostEqual(judged()["cost"], 60 + (5800 - 60 * 25) / 15, 6)
+        scenario.write_text(scenario.read_text().replace("from_deg: 90, speed_mps: 5", "from_deg: 0, speed_mps: 21"))
+        self.assertIn("does not hold its course in a wind of 21.00 m/s", json.dumps(judged(code=1)))
+        # It is over before that wind blows.
+        scenario.write_text(scenario.read_text().replace(at(60), at(240)))
+        self.assertAlmostEqual(judged()["cost"], 5800 / 25, 6)
+
+    def test_planners_plan_anew_where_the_wind_changes(self):
+        """Flown outside the program by its own rule of winds: each leg as the wind of its time carries it."""
+        chance = random.Random(5)
+        for planner in ("hybrid_astar", "rrt", "rrt_connect", "rrt_star"):
+            with self.subTest(planner=planner):
+                winds = [(0, 6, 200)]
+                while winds[-1][0] < 200:
+                    winds.append((winds[-1][0] + chance.randint(20, 70), chance.uniform(0, 9), chance.uniform(0, 360)))
+                self.files(hours(*winds), planner=planner)
+                step = self.result()
+                self.assertTrue(step["accepted"])
+                seconds, off_m = wind_flight.fly(step, 20, winds)
+                self.assertAlmostEqual(seconds, step["metrics"]["duration_s"], delta=1e-3)
+                self.assertLess(off_m, 0.01)
+
+    def test_the_objective_is_counted_in_the_winds_of_its_time(self):
+        winds = (0, 9, 270), (100, 9, 90)
+        self.files(hours(*winds), "objective: {time: {}}", planner="astar", steps="    with: {cell_m: [200, 200, 50]}")
+        scenario = self.folder / "s.yaml"
+        scenario.write_text(scenario.read_text().replace(", bank_deg: 30", "").replace(", heading_deg: 90", ""))
+        step = self.result()
+        self.assertAlmostEqual(step["cost"], step["metrics"]["duration_s"], delta=1e-6)
+        self.assertLessEqual(step["bound"], step["cost"])
+        seconds, off_m = wind_flight.fly(step, 20, winds)
+        self.assertAlmostEqual(seconds, step["cost"], delta=1e-3)
+
+    def test_refusals(self):
+        def refusal(wind, steps="", start="start_time: 2026-05-01T10:00:00Z", goal="[5900, 1000, 150]"):
+            self.files(wind, steps=steps)
+            scenario = self.folder / "s.yaml"
+            scenario.write_text(scenario.read_text().replace("start_time: 2026-05-01T10:00:00Z", start).replace(
+                "[5900, 1000, 150]", goal))
+            return self.altiplan("run", "p.yaml", code=3)
+        two = hours((0, 5, 0), (60, 5, 90))
+        self.assertRegex(refusal(two, start=""),
+                         r"s\.yaml:\d+:\d+: (scenario\.)?wind\.hours\.0\.from_time: winds by the hour need the "
+                         r"scenario's start_time")
+        self.assertIn("no wind is given from start_time to here", refusal(hours((1, 5, 0))))
+        self.assertIn("expected hours in ascending order", refusal(hours((0, 5, 0), (0, 5, 90))))
+        self.assertIn("wind.hours.0.from_time: expected a time such as",
+                      refusal("{hours: [{from_time: noon, from_deg: 0, speed_mps: 1}]}"))
+        self.assertIn("expected hours alone, or one wind",
+                      refusal(two.replace("{hours", "{from_deg: 1, speed_mps: 1, hours")))
+        self.assertIn("expected from_deg and speed_mps, or layers, or grid",
+                      refusal("{hours: [{from_time: 2026-05-01T10:00:00Z}]}"))
+        self.assertIn("a flight knows one wind, and this one changes",
+                      refusal(two, steps="    id: route\n  - fly: route"))
+        self.assertIn("a landing knows one wind, and this one changes",
+                      refusal(two, goal="[5900, 1000, 0], landing: {course_deg: 90, height_m: 50}"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]] + sys.argv[3:])
