@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "altiplan/kit/lattice/lattice.hpp"
@@ -40,19 +41,21 @@ class StraightRuns {
   /// that a search must expand; 0 if there is none before a blocked one. The first step is free.
   int steps(const Cell& c, std::size_t at, int direction) const {
     const int longest = to_end(c, direction);
+    const auto row = std::ptrdiff_t(row_bits_);
+    const auto level = std::ptrdiff_t(level_bits_);
     switch (direction) {
       case kHere - 1:
         return along_row<false>(at, longest);
       case kHere + 1:
         return along_row<true>(at, longest);
       case kHere - 3:
-        return across_rows(at, -row_bits_, level_bits_, longest);
+        return across_rows(at, -row, level, longest);
       case kHere + 3:
-        return across_rows(at, row_bits_, level_bits_, longest);
+        return across_rows(at, row, level, longest);
       case kHere - 9:
-        return across_rows(at, -level_bits_, row_bits_, longest);
+        return across_rows(at, -level, row, longest);
       default:
-        return across_rows(at, level_bits_, row_bits_, longest);
+        return across_rows(at, level, row, longest);
     }
   }
 
@@ -108,33 +111,36 @@ class StraightRuns {
     return end < first(window<kAhead>(at)) ? end : 0;
   }
 
-  /// `step`, `beside`: bits to the next row on the run, and to those on both sides of it.
-  int across_rows(std::size_t at, std::size_t step, std::size_t beside, int longest) const {
-    // Rows begin with a word, so the cell has the same place in its word on all of them.
+  /// `step`, `beside`: bits to the next row on the run, and to those on both sides of it. Rows
+  /// begin with a word, so the cell has the same place in its word on all of them.
+  int across_rows(std::size_t at, std::ptrdiff_t step, std::ptrdiff_t beside, int longest) const {
     return at % 64 == 0 || at % 64 == 63
-               ? across(at, step, beside, longest, [this](std::size_t bit) { return three(bit); })
-               : across(at, step, beside, longest,
-                        [this](std::size_t bit) { return words_[bit / 64] >> (bit % 64 - 1); });
+               ? across(std::ptrdiff_t(at), step, beside, 1, longest,
+                        [this](std::ptrdiff_t bit) { return three(std::size_t(bit)); })
+               : across(std::ptrdiff_t(at / 64), step / 64, beside / 64, at % 64, longest,
+                        [this](std::ptrdiff_t word) { return words_[word]; });
   }
 
-  /// `three` gives a cell, and those before and after it in its row, as the lowest bits.
-  template <class Three>
-  static int across(std::size_t at, std::size_t step, std::size_t beside, int longest,
-                    const Three& three) {
-    std::uint64_t left = three(at - beside);
-    std::uint64_t own = three(at);
-    std::uint64_t right = three(at + beside);
+  /// `cells` gives, by what `at` counts, a cell as the bit `place`, beside those before and after
+  /// it in its row.
+  template <class Cells>
+  static int across(std::ptrdiff_t at, std::ptrdiff_t step, std::ptrdiff_t beside,
+                    std::size_t place, int longest, const Cells& cells) {
+    const std::uint64_t cell = std::uint64_t{1} << place;
+    const std::uint64_t others = cell << 1 | cell >> 1;
+    std::uint64_t left = cells(at - beside);
+    std::uint64_t own = cells(at);
+    std::uint64_t right = cells(at + beside);
     for (int steps = 0; steps < longest; ++steps) {
       at += step;
-      const std::uint64_t next_left = three(at - beside);
-      const std::uint64_t next_own = three(at);
-      const std::uint64_t next_right = three(at + beside);
-      const std::uint64_t differ =
-          (((left ^ next_left) | (right ^ next_right)) & 7) | ((own ^ next_own) & 5);
-      if (differ != 0) {
+      const std::uint64_t next_left = cells(at - beside);
+      const std::uint64_t next_own = cells(at);
+      const std::uint64_t next_right = cells(at + beside);
+      const std::uint64_t next_to = (left ^ next_left) | (right ^ next_right);
+      if (((next_to & (cell | others)) | ((own ^ next_own) & others)) != 0) {
         return std::max(steps, 1);
       }
-      if ((next_own & 2) != 0) {
+      if ((next_own & cell) != 0) {
         return 0;
       }
       left = next_left;
