@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """misbehaving_study_test.py PROGRAM DOC PLUGINS [REPETITIONS]: studies of all rows of the document's
 table, each a pipeline, and of pipelines that behave, with a process each (by day of every fourth row) and
-with processes that are used again. Every row has its outcome; what behaves has the results of a study
-without the rows. Rows that damage the files of other runs have studies of their own: one could remove what
-another has forged. So have, beside all others, those that wait for the end of their time, which takes
-nothing but time.
+with processes that are used again (by day of the others). Every row has its outcome; what behaves has the
+results of a study without the rows. Rows that damage the files of other runs have studies of their own: one
+could remove what another has forged. So have, beside all others, those that wait for the end of their time,
+which takes nothing but time.
 
 A row is a fault, a step, an outcome and words that the message must hold."""
 import concurrent.futures
@@ -103,7 +103,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(1) as beside:
         for reuse in REPETITIONS:
             began = time.time()
-            chosen = rows if NIGHTLY or reuse > 1 else rows[3::4]
+            chosen = [row for n, row in enumerate(rows) if NIGHTLY or (n % 4 == 3) == (reuse == 1)]
             waiting = [row for row in chosen if WAITS in row[3]]
             alone = [[row] for row in chosen if "WORK" in row[1]]
             among_themselves = [row for row in chosen if "WORK" not in row[1] and row not in waiting]
