@@ -51,12 +51,15 @@ Budget part_of(Budget budget, std::size_t parts) {
   return budget;
 }
 
-/// The vehicle's velocity at the end of a route.
-Vec3 velocity_at_end(const Route& route, double speed) {
+/// The vehicle's velocity at the end of a route. Where turns have a radius, it is as long as the
+/// last straight leg: of that the next section's first corner is cut (fillet_radius).
+Vec3 velocity_at_end(const Route& route, const Request& request) {
   for (std::size_t i = route.leg_count(); i-- > 0;) {
-    const Vec3 way = route.leg(i).track(1);
+    const Leg leg = route.leg(i);
+    const Vec3 way = leg.track(1);
     if (way.norm() >= kLengthTolerance) {
-      return way.normalized() * speed;
+      const bool is_cut = request.limits.min_turn_radius > 0 && !leg.turns();
+      return is_cut ? way : Vec3(way.normalized() * request.vehicle.speed_mps);
     }
   }
   return Vec3::Zero();
@@ -158,7 +161,7 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytim
       }
     }
     request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
-    request.start.velocity = velocity_at_end(whole.route, request.vehicle.speed_mps);
+    request.start.velocity = velocity_at_end(whole.route, request);
     request.start.position = whole.route.back();
     request.start.loiter.reset();
   }
