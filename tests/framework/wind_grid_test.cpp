@@ -108,6 +108,36 @@ TEST(WindGrid, ATurnStaysInACell) {
   EXPECT_FALSE(ok({210, 110, 50}));  // it drifts by another wind
 }
 
+TEST(WindGrid, TheBordersOfOtherLayersDoNotCutATurn) {
+  std::vector<std::array<float, 2>> velocities(24, {4, 0});
+  Request request = request_in(wind_of(velocities));
+  request.limits.min_turn_radius = 30;
+  request.wind.layers.push_back({60, {0, 0, 0}});
+  const auto ok = [&](double z, double climb, const Vec3& wind) {
+    const Vec3 drift = 30 * kPi / 2 / kSpeed * wind;
+    return leg_ok(std::nullopt, Leg::turning({{175, 110, z}, 0}, kPi / 2, 30, climb, drift),
+                  request);
+  };
+  EXPECT_TRUE(ok(70, 0, {0, 0, 0}));
+  EXPECT_TRUE(ok(60, 0, {0, 0, 0}));
+  EXPECT_TRUE(ok(60, 5, {0, 0, 0}));
+  EXPECT_FALSE(ok(55, 5, {4, 0, 0}));  // up to the border, within the grid
+  EXPECT_FALSE(ok(58, 5, {0, 0, 0}));
+}
+
+TEST(WindGrid, ATurnFromBorderToBorderHasTheWindBetween) {
+  std::vector<std::array<float, 2>> velocities(24);
+  velocities[6 * 1 + 2] = {0, 4};  // east of x = 200
+  Request request = request_in(wind_of(velocities));
+  request.limits.min_turn_radius = 20;
+  const auto ok = [&](const Vec3& wind) {
+    const Vec3 drift = 20 * kPi / kSpeed * wind;
+    return leg_ok(std::nullopt, Leg::turning({{200, 120, 50}, kPi}, -kPi, 20, 0, drift), request);
+  };
+  EXPECT_TRUE(ok({0, 0, 0}));
+  EXPECT_FALSE(ok({0, 4, 0}));
+}
+
 TEST(WindGrid, ALoiterCircleIsFlownInTheStrongestWind) {
   std::vector<std::array<float, 2>> velocities(24);
   Request request = request_in(wind_of(velocities));

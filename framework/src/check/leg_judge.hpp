@@ -134,8 +134,9 @@ class LegJudge {
   bool keeps_drift() const {
     const double speed = request_.air_speed();
     const double time = turn_->air_length() / speed;
-    const Vec3 drift = time * request_.wind.at((a_ + b_) / 2);
-    const bool crosses = !request_.wind.is_uniform(turn_->box());
+    // Its ends may lie on a border, beside which it is on one side.
+    const Vec3 drift = time * request_.wind.at((box_.min + box_.max) / 2);
+    const bool crosses = !request_.wind.is_uniform(box_);
     const double off = (turn_->drift - drift).norm();
     return (off <= kLengthTolerance && !crosses) || report_([&] {
              return Violation{"wind",

@@ -110,12 +110,15 @@ std::vector<double> Wind::crossings(const Vec3& from, const Vec3& to) const {
 
 bool Wind::is_uniform(const Box& box) const {
   bool is_uniform = true;
-  for (const Layer& layer : layers) {
-    is_uniform &= !(layer.above_m > box.min.z() && layer.above_m < box.max.z());
+  double top = kInfinity;
+  for (auto layer = layers.rbegin(); layer != layers.rend(); top = (layer++)->above_m) {
+    is_uniform &= !(layer->above_m > box.min.z() && layer->above_m < box.max.z());
+    const bool is_in_force =
+        (layer->above_m < box.max.z() || layer->above_m == box.min.z()) && box.min.z() < top;
     for (const std::size_t axis : {0U, 1U}) {
       const auto at = Eigen::Index(axis);
-      if (layer.grid) {
-        is_uniform &= layer.grid->borders(axis, box.min[at], box.max[at]).empty();
+      if (layer->grid && is_in_force) {
+        is_uniform &= layer->grid->borders(axis, box.min[at], box.max[at]).empty();
       }
     }
   }
