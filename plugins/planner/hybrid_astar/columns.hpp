@@ -179,9 +179,15 @@ class Columns {
       return kNearer * std::max(0.0, length - nearer);
     }
     const std::vector<Wind::Layer>& layers = request_.wind.layers;
-    return layers.size() == 1 && !layers.front().grid && !request_.start.loiter
+    return layers.size() == 1 && !layers.front().grid && !is_calm_below() &&
+                   !request_.start.loiter
                ? kNearer * through_air(Vec3(x, y, 0) * cell_)
                : 0;
+  }
+
+  /// True if the volume reaches below the lowest layer of wind.
+  bool is_calm_below() const {
+    return request_.volume.min.z() < request_.wind.layers.front().above_m;
   }
 
   /// Length through the air of a straight leg with that displacement, in the wind that helps most.
@@ -190,7 +196,7 @@ class Columns {
     if (request_.wind.is_calm() || run == 0) {
       return run;
     }
-    double fastest = 0;
+    double fastest = is_calm_below() ? request_.air_speed() : 0;
     for (const Wind::Layer& layer : request_.wind.layers) {
       fastest = std::max(fastest,
                          layer.grid

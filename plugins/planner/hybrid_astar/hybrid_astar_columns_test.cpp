@@ -116,5 +116,21 @@ TEST(HybridAstarColumns, AreThoseOfDijkstraInWhateverOrderTheyAreAskedFor) {
   }
   EXPECT_GT(finite, 1500);
 }
+
+TEST(HybridAstarColumns, BelowTheLowestWindItIsCalm) {
+  RandomStream random(3);
+  Request request = among_towers(random);
+  request.level_m.reset();
+  request.volume.min.z() = 0;
+  const Vec3 leg = request.goal.position - request.start.position;
+  request.wind.layers = {{200, -9 * leg.normalized()}};
+  const std::vector<Pose> starts{{request.start.position, 0}};
+  const std::vector<Pose> goals{{request.goal.position, 0}};
+  const double length = leg.head<2>().norm();
+  EXPECT_NEAR(Columns(request, kCell, starts, goals).straight(request.start.position), length,
+              1e-9 * length);
+  request.wind.layers[0].above_m = 0;
+  EXPECT_GT(Columns(request, kCell, starts, goals).straight(request.start.position), length + 1);
+}
 }  // namespace
 }  // namespace altiplan::hybrid_astar::hybrid_astar_columns_test
