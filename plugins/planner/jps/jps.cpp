@@ -71,7 +71,7 @@ class Jps final : public Planner {
     const std::size_t allowed = std::min(max_bytes, request.budget.max_memory_bytes);
     if (const int levels = lattice.spec().counts[2]; levels > 1) {
       return refused("searches one level of cells, this lattice has " + std::to_string(levels) +
-                     " (the request does not ask for level flight)");
+                     " without the scenario's level_flight_at_m");
     }
     return params_.corner == CornerRule::any
                ? search<CornerRule::any>(request, lattice, allowed)

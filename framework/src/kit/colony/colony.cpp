@@ -369,7 +369,7 @@ PlanResult ColonyPlanner::do_plan(const Request& request) const {
     PlanResult result;
     result.status = PlanStatus::invalid_problem;
     result.message = std::string(name_) + " searches one level of cells, this lattice has " +
-                     std::to_string(levels) + " (level flight is not requested): use astar";
+                     std::to_string(levels) + ": give the scenario level_flight_at_m, or use astar";
     return result;
   }
   return search(request, lattice);
