@@ -179,8 +179,7 @@ class Columns {
       return kNearer * std::max(0.0, length - nearer);
     }
     const std::vector<Wind::Layer>& layers = request_.wind.layers;
-    return layers.size() == 1 && !layers.front().grid && !is_calm_below() &&
-                   !request_.start.loiter
+    return layers.size() == 1 && !layers.front().grid && !is_calm_below() && !request_.start.loiter
                ? kNearer * through_air(Vec3(x, y, 0) * cell_)
                : 0;
   }
