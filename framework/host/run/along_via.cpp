@@ -94,10 +94,10 @@ FlownPart flown_until(double until_s, const Route& route, const Request& request
       flown.route.push_back(leg.piece(0, share));
     }
     // A turn goes on with its heading through the air, a straight leg on its course.
-    const Vec3 course =
-        leg.turns() ? then.ground_velocity({flown.route.back(), leg.heading + share * leg.turn})
-                    : leg.track(0);
-    end = {until_s, flown.route.back(), course.normalized() * request.vehicle.speed_mps};
+    end = {until_s, flown.route.back(), velocity_at_end(flown.route, request)};
+    if (leg.turns()) {
+      end.velocity = then.ground_velocity({end.position, leg.heading + share * leg.turn});
+    }
     flown.is_all = false;
     break;
   }
@@ -168,7 +168,18 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytim
   return whole;
 }
 
-PlanResult plan_in_winds(const Request& given, const PlanPart& plan_part) {
+namespace {
+/// For a section in one wind, where another may blow before the goal is reached.
+Budget budget_until(double until_s, const Request& request) {
+  constexpr double kDetour = 2;  // of the straight way
+  const double straight_s =
+      (request.goal.position - request.start.position).norm() / request.air_speed();
+  const bool is_all = until_s - request.start.time_s > kDetour * straight_s;
+  return is_all ? request.budget : part_of(request.budget, 2);
+}
+}  // namespace
+
+PlanResult plan_in_winds(const Request& given, bool anytime, const PlanPart& plan_part) {
   if (given.wind.changes.empty()) {
     return plan_part(given);
   }
@@ -176,8 +187,11 @@ PlanResult plan_in_winds(const Request& given, const PlanPart& plan_part) {
   Request request = given;
   for (bool goes_on = true; goes_on;) {
     const double until_s = given.wind.in_force_until(request.start.time_s);
-    request.wind = given.wind.in_force(request.start.time_s);
-    PlanResult part = plan_part(request);
+    const State from = request.start;
+    Request section = request;
+    section.wind = given.wind.in_force(from.time_s);
+    section.budget = anytime ? budget_until(until_s, request) : request.budget;
+    PlanResult part = plan_part(section);
     add_counters(whole.counters, part.counters);
     whole.budget_hit = whole.budget_hit || part.budget_hit;
     whole.status = part.status;
@@ -187,17 +201,16 @@ PlanResult plan_in_winds(const Request& given, const PlanPart& plan_part) {
     if (part.status == PlanStatus::solved) {
       Request then = request;
       then.wind = given.wind.in_force(until_s);
-      FlownPart flown = flown_until(until_s, part.route, request, then);
+      FlownPart flown = flown_until(until_s, part.route, section, then);
       goes_on = !flown.is_all;
       whole.route.append(goes_on ? flown.route : part.route);
       request.start = flown.end;
       request.budget.max_iterations = left_of(request.budget.max_iterations, part.counters);
     }
-    if (request.start.time_s > given.start.time_s) {
-      whole.message += ", from " + request.place_text(request.start.position) +
-                       " on, where the wind "
-                       "changes " +
-                       std::to_string(request.start.time_s) + " s after the start";
+    if (from.time_s > given.start.time_s) {
+      whole.message += ", from " + request.place_text(from.position) +
+                       " on, where the wind changes " + std::to_string(from.time_s) +
+                       " s after the start";
     }
   }
   return whole;

@@ -75,7 +75,7 @@ class Run {
     bool is_anytime() const { return planner && planner->traits().anytime; }
     PlanPart part() const {
       return [this](const Request& request) {
-        return plan_in_winds(request, [this](const Request& in_one_wind) {
+        return plan_in_winds(request, is_anytime(), [this](const Request& in_one_wind) {
           return planner ? planner->plan(in_one_wind) : roll_out(*local_planner, in_one_wind);
         });
       };

@@ -60,7 +60,7 @@ class ZeroMemory {
   static constexpr std::size_t kHugePage = std::size_t{2} << 20;
   /// Up to this size, memory is backed by huge pages: it is touched far faster, but of a larger one
   /// a few places of each may be written.
-  static constexpr std::size_t kHuge = std::size_t{256} << 20;
+  static constexpr std::size_t kHuge = std::size_t{512} << 20;
 
   void* memory_ = nullptr;
   void* values_ = nullptr;  // on a huge page if mapped
