@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "altiplan/formats/input_file.hpp"
 #include "commands.hpp"
 #include "first_run.hpp"
 #include "flight_text.hpp"
@@ -283,10 +282,6 @@ bool is_circle_low(const host::PlanReport& report) {
                      [](const host::Finding& finding) { return finding.what == "its circle"; });
 }
 
-double length(const host::RunResult& result) {
-  return altiplan::length(result.steps[*result.accepted].route);
-}
-
 /// The search in ever wider corridors, in the end on smaller cells.
 struct Tries {
   const fs::path& folder;
@@ -295,44 +290,6 @@ struct Tries {
   host::FirstFiles files;  ///< of the last try
   host::RunResult result{};
   int attempt = 0;
-  struct Spare {
-    host::FirstFiles files;
-    host::RunResult result;
-    std::string json;
-  };
-  std::optional<Spare> spare{};
-
-  /// The shorter of the routes by the planner chosen and by another one; the longer is spare.
-  void run_with_other(const host::RouteWish& wish, const host::FirstRoute& first) {
-    run(first);
-    const std::optional<std::string> other = host::other_planner(wish);
-    if (!result.accepted || interrupt.happened() || !other) {
-      return;
-    }
-    host::RouteWish by_other = wish;
-    by_other.planner = other;
-    spare.emplace(Spare{files, result, formats::read_file(folder / "result.json")});
-    files = host::FirstRoute(by_other, overrides.plugin_path).files(attempt, folder);
-    result = run_in(folder, files, overrides, interrupt);
-    if (!result.accepted || length(spare->result) <= length(result)) {
-      const bool is_route = result.accepted.has_value();
-      take_spare();
-      if (!is_route) {
-        spare.reset();
-      }
-    }
-  }
-
-  /// Swaps the route with the spare one, in the folder too.
-  void take_spare() {
-    Spare taken =
-        *std::exchange(spare, Spare{files, result, formats::read_file(folder / "result.json")});
-    files = std::move(taken.files);
-    result = std::move(taken.result);
-    host::write_file(folder / "scenario.yaml", files.scenario);
-    host::write_file(folder / "pipeline.yaml", files.pipeline);
-    host::write_file(folder / "result.json", taken.json);
-  }
 
   void run(const host::FirstRoute& first) {
     for (int next = 0; next < host::FirstRoute::kTries; ++next) {
@@ -400,7 +357,7 @@ int go(GoArguments arguments) {
   const std::unique_ptr<host::Unfinished> unfinished = created(folder);
   Interrupt interrupt;
   Tries tries{folder, arguments.overrides, interrupt, std::move(files)};
-  tries.run_with_other(wish, *planned);
+  tries.run(*planned);
   Planned plan;
   std::optional<host::PlanReport> report;
   const auto judge_plan = [&] {
@@ -412,10 +369,6 @@ int go(GoArguments arguments) {
     }
   };
   if (tries.result.accepted) {
-    judge_plan();
-  }
-  if (tries.spare && !interrupt.happened() && !(report && report->passed())) {
-    tries.take_spare();
     judge_plan();
   }
   // What an aeroplane's flight lacks of its limits of height, the next route keeps from them.

@@ -118,9 +118,4 @@ Search choose_search(const RouteWish& wish, const WishedHeights& heights, const 
   search.words += std::string(", then ") + (is_pruned ? "prune and " : "") + "terrain_follow";
   return search;
 }
-
-std::optional<std::string> other_planner(const RouteWish& wish) {
-  const bool is_open = !wish.planner && !wish.turn_radius_m && wish.max_above_ground_m;
-  return is_open ? std::optional<std::string>("astar") : std::nullopt;
-}
 }  // namespace altiplan::host

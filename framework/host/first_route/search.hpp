@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "host/first_route/corridor.hpp"
@@ -28,8 +27,4 @@ std::string open_cells(const SearchSpace& space);
 /// A search that answers in seconds. The wish's planner gets cells if it takes them.
 Search choose_search(const RouteWish& wish, const WishedHeights& heights, const SearchSpace& space,
                      Registry& registry);
-
-/// Where the wish leaves the planner open, one beside it whose route may be shorter: within a band
-/// above steep ground the any-angle search commits itself early.
-std::optional<std::string> other_planner(const RouteWish& wish);
 }  // namespace altiplan::host
