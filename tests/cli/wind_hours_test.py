@@ -107,13 +107,27 @@ class WindHours(unittest.TestCase):
         seconds, off_m = wind_flight.fly(step, 20, winds)
         self.assertAlmostEqual(seconds, step["cost"], delta=1e-3)
 
+    def test_a_budget_is_enough_for_each_wind(self):
+        self.files(hours((0, 5, 200), (100, 5, 200), (150, 5, 200)), planner="rrt_star", steps="    within_iterations: 6000")
+        self.assertTrue(self.result()["accepted"])
+
+    def test_a_wind_long_after_the_flight_keeps_no_smoother_from_anything(self):
+        steps = "  - smooth: shortcut"
+        self.files(hours((0, 5, 200)), planner="rrt", steps=steps)
+        alone = self.result()["route"]
+        self.files(hours((0, 5, 200), (3000, 25, 0)), planner="rrt", steps=steps)
+        self.assertEqual(self.result()["route"], alone)
+
     def test_refusals(self):
-        def refusal(wind, steps="", start="start_time: 2026-05-01T10:00:00Z", goal="[5900, 1000, 150]"):
+        def refusal(wind, steps="", start="start_time: 2026-05-01T10:00:00Z", goal="[5900, 1000, 150]",
+                    radius="radius_m: 2"):
             self.files(wind, steps=steps)
             scenario = self.folder / "s.yaml"
             scenario.write_text(scenario.read_text().replace("start_time: 2026-05-01T10:00:00Z", start).replace(
-                "[5900, 1000, 150]", goal))
-            return self.altiplan("run", "p.yaml", code=3)
+                "[5900, 1000, 150]", goal).replace("radius_m: 2", radius))
+            said = self.altiplan("run", "p.yaml", code=3)
+            self.assertEqual(self.altiplan("validate", "p.yaml", code=3), said)
+            return said
         two = hours((0, 5, 0), (60, 5, 90))
         self.assertRegex(refusal(two, start=""),
                          r"s\.yaml:\d+:\d+: (scenario\.)?wind\.hours\.0\.from_time: winds by the hour need the "
@@ -128,6 +142,8 @@ class WindHours(unittest.TestCase):
                       refusal("{hours: [{from_time: 2026-05-01T10:00:00Z}]}"))
         self.assertIn("a flight knows one wind, and this one changes",
                       refusal(two, steps="    id: route\n  - fly: route"))
+        self.assertIn("a body's attitude knows one wind, and this one changes",
+                      refusal(two, radius="body: {box_m: [1, 4, 1]}"))
         self.assertIn("a landing knows one wind, and this one changes",
                       refusal(two, goal="[5900, 1000, 0], landing: {course_deg: 90, height_m: 50}"))
 

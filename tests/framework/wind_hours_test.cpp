@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "altiplan/body.hpp"
 #include "altiplan/check.hpp"
 #include "altiplan/energy.hpp"
 #include "altiplan/flown_route.hpp"
@@ -140,6 +141,27 @@ TEST(WindHours, EnergyEqualsFlightInSmallSteps) {
   }
 }
 
+TEST(WindHours, HoursDoNotChangeTheTimeOfACopter) {
+  RandomStream random(4);
+  for (int n = 0; n < 50; ++n) {
+    Request request = request_in(random_wind(random, 12), false);
+    request.vehicle.acceleration = {2, 1, 1, 5};
+    Request calm = request;
+    calm.wind = {};
+    const Route route{random.in(kVolume), random.in(kVolume), random.in(kVolume)};
+    EXPECT_EQ(flown_time(route, request), flown_time(route, calm));
+  }
+}
+
+TEST(WindHours, ABodyIsNotJudged) {
+  Request request = request_in({{}, {{600, {}}}});
+  const Route route{request.start.position, request.goal.position};
+  EXPECT_TRUE(check(route, request).ok());
+  auto body = std::make_shared<Body>();
+  request.vehicle.body = body;
+  EXPECT_FALSE(check(route, request).ok());
+}
+
 TEST(WindHours, ALegIsRefusedIfItsCourseIsNotHeldAtItsTime) {
   RandomStream random(3);
   int refused = 0;
@@ -209,6 +231,21 @@ TEST(WindHours, ATurnGoesOnByItsHeadingThroughTheAir) {
   ASSERT_FALSE(result.ok());
   EXPECT_NE(result.violations.front().message.find("while the wind changes"), std::string::npos)
       << result.violations.front().message;
+}
+
+TEST(WindHours, NoTimeIsKnownAfterALegThatIsNotFlown) {
+  Request request = request_in({{{-kInfinity, {0, 25, 0}}}, {{600, {}}}});
+  request.limits.min_turn_radius = 100;
+  Route route{{100, 500, 50}, {900, 500, 50}};
+  route.push_back(Leg::turning({route.back(), 0}, kPi / 2, 100, 0));
+  route.push_back(Leg::straight(route.back(), route.back() + Vec3(0, 300, 0)));
+  request.start.position = route.front();
+  request.goal.position = route.back();
+  EXPECT_EQ(measure(route, request).duration_s, kInfinity);
+  for (const Violation& violation : check(route, request).violations) {
+    EXPECT_EQ(violation.message.find("while the wind changes"), std::string::npos)
+        << violation.message;
+  }
 }
 
 TEST(WindHours, TheClimbThroughTheAirIsThatOfTheTime) {

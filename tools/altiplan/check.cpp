@@ -140,9 +140,11 @@ int report(const host::Mission& mission, const Route& route,
   if (!as_json) {
     print_route(verdict, measures);
     if (mission.request.objective) {
-      std::printf("  cost %s %s, at least %s: gap %s %%\n", host::with_digits(cost.cost, 6).c_str(),
+      const std::string gap =
+          std::isfinite(cost.gap()) ? ": gap " + fixed(100 * cost.gap(), 2) + " %" : "";
+      std::printf("  cost %s %s, at least %s%s\n", host::with_digits(cost.cost, 6).c_str(),
                   mission.request.objective->unit().c_str(),
-                  host::with_digits(cost.bound, 6).c_str(), fixed(100 * cost.gap(), 2).c_str());
+                  host::with_digits(cost.bound, 6).c_str(), gap.c_str());
     }
     print_metrics(stdout, "route", metrics);
   }

@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "host/config/yaml.hpp"
 #include "host/mission/mission.hpp"
+#include "host/mission/winds.hpp"
 #include "host/result/result_json.hpp"
 #include "progress.hpp"
 #include "study/plan/study_plan.hpp"
@@ -54,6 +55,7 @@ std::string validate_one(const std::string& file, const ValidateArguments& argum
     build(config);
   } else {
     host::expect_minimised(config);
+    host::expect_one_wind(config);
   }
   return arguments.builds ? "valid, and its world can be built" : "valid";
 }

@@ -84,7 +84,8 @@ class File {
     return corner;
   }
   /// Toward east and north at a place. Throws Error where there is none.
-  std::array<float, 2> at(Place place) const {
+  std::array<float, 2> at(const Place& given) const {
+    Place place = given;
     if (is_geographic_) {
       constexpr double kTurn = 360;
       place[0] -= kTurn * std::floor((place[0] - south_west_[0]) / kTurn);
@@ -92,13 +93,13 @@ class File {
     const double i = std::floor((place[0] - south_west_[0]) / step_[0]);
     const double j = std::floor((place[1] - south_west_[1]) / step_[1]);
     if (!(i >= 0 && j >= 0 && i < counts_[0] && j < counts_[1])) {
-      refuse("does not cover the volume: none of its cells lies at " + text(place));
+      refuse("does not cover the volume: none of its cells lies at " + text(given));
     }
     const std::size_t cell =
         (std::size_t(counts_[1]) - 1 - std::size_t(j)) * std::size_t(counts_[0]) + std::size_t(i);
     const std::array<float, 2> wind{values_[0][cell], values_[1][cell]};
     if (!(std::hypot(double(wind[0]), double(wind[1])) <= kFastest)) {
-      refuse("has no wind of up to " + std::to_string(int(kFastest)) + " m/s at " + text(place));
+      refuse("has no wind of up to " + std::to_string(int(kFastest)) + " m/s at " + text(given));
     }
     return wind;
   }

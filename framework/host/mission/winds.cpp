@@ -94,9 +94,15 @@ class Winds {
   double begins_s_ = 0;
   double ends_s_ = 0;
 };
+}  // namespace
 
-/// Refuses what knows the wind of no time but one.
 void expect_one_wind(const Config& config) {
+  const std::vector<WindHourEntry>& hours = config.scenario.wind.hours;
+  const bool changes = !hours.empty() && formats::parse_iso_time(hours.back().from_time) >
+                                             formats::parse_iso_time(*config.scenario.start_time);
+  if (!changes) {
+    return;
+  }
   const auto refuse = [](const Location& where, const std::string& key, const char* what) {
     throw ConfigError(where, key,
                       std::string(what) +
@@ -104,6 +110,9 @@ void expect_one_wind(const Config& config) {
                           "of one hour");
   };
   const ScenarioFile& file = config.scenario;
+  if (file.vehicle.body) {
+    refuse(place_of(config.scenario_tree, "vehicle.body"), "vehicle.body", "a body's attitude");
+  }
   if (file.task) {
     refuse(place_of(config.scenario_tree, "task"), "task", "a task");
   }
@@ -119,13 +128,9 @@ void expect_one_wind(const Config& config) {
     }
   }
 }
-}  // namespace
 
 Wind read_winds(const Config& config, Mission& mission) {
-  Wind wind = Winds(config, mission).read();
-  if (!wind.changes.empty()) {
-    expect_one_wind(config);
-  }
-  return wind;
+  expect_one_wind(config);
+  return Winds(config, mission).read();
 }
 }  // namespace altiplan::host

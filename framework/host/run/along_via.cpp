@@ -169,13 +169,17 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytim
 }
 
 namespace {
-/// For a section in one wind, where another may blow before the goal is reached.
-Budget budget_until(double until_s, const Request& request) {
+/// For a section in one wind: an equal part for each that may blow on the way.
+Budget budget_in_one(const Wind& wind, const Request& request) {
   constexpr double kDetour = 2;  // of the straight way
   const double straight_s =
       (request.goal.position - request.start.position).norm() / request.air_speed();
-  const bool is_all = until_s - request.start.time_s > kDetour * straight_s;
-  return is_all ? request.budget : part_of(request.budget, 2);
+  const double end_s = request.start.time_s + kDetour * straight_s;
+  std::size_t winds = 1;
+  for (double at_s = request.start.time_s; (at_s = wind.in_force_until(at_s)) < end_s;) {
+    ++winds;
+  }
+  return part_of(request.budget, winds);
 }
 }  // namespace
 
@@ -190,7 +194,7 @@ PlanResult plan_in_winds(const Request& given, bool anytime, const PlanPart& pla
     const State from = request.start;
     Request section = request;
     section.wind = given.wind.in_force(from.time_s);
-    section.budget = anytime ? budget_until(until_s, request) : request.budget;
+    section.budget = anytime ? budget_in_one(given.wind, request) : request.budget;
     PlanResult part = plan_part(section);
     add_counters(whole.counters, part.counters);
     whole.budget_hit = whole.budget_hit || part.budget_hit;

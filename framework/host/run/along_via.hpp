@@ -19,8 +19,8 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytim
                       const PlanPart& plan_part);
 
 /// Plans a section in a wind that changes: in that of its start as far as it is flown before the
-/// change, and anew from there; an `anytime` planner has half of its budget left for that. No route
-/// is proved to be none.
+/// change, and anew from there; an `anytime` planner has an equal part of its budget for each
+/// that may blow on the way. No route is proved to be none.
 PlanResult plan_in_winds(const Request& request, bool anytime, const PlanPart& plan_part);
 
 /// A session for planners without one: plans from scratch, past the via points still ahead.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "altiplan/measures.hpp"
 #include "host/mission/runways.hpp"
 
 namespace altiplan::host {
@@ -211,10 +212,17 @@ PlanResult Run::between_via(const Smoother& smoother, const Route& before, const
     fixed.push_back({before[cut], 0, mission_.via[fixed.size()].heading});
   }
   cuts.push_back(before.size() - 1);
+  Request in_flight = request;  // in the winds that the route meets
+  double end_s = request.start.time_s;
+  for (std::size_t i = 0; i < before.leg_count(); ++i) {
+    end_s += leg_duration(before.leg(i), end_s, request);
+  }
+  std::erase_if(in_flight.wind.changes,
+                [&](const Wind::Change& change) { return change.from_s > end_s; });
   std::size_t from = 0;
   std::size_t piece = 0;
   std::string messages;  // one message per section: a smoother sees only its own
-  PlanResult whole = plan_along(request, fixed, false, [&](const Request& part) {
+  PlanResult whole = plan_along(in_flight, fixed, false, [&](const Request& part) {
     const Route section = before.part(from, cuts[piece]);
     PlanResult result;
     const bool is_stop = section.leg_count() == 1 && section.leg(0).waits();  // of a task

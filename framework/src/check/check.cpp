@@ -157,6 +157,10 @@ CheckResult check(const Route& route, const Request& request) {
     return result;
   }
   check_ends(route, request, found);
+  if (request.vehicle.body != nullptr && !request.wind.changes.empty()) {
+    found.push_back(
+        {"body", 0, 0, 0, "how the vehicle's body turns where the wind changes is not judged"});
+  }
   Arrival arrival{request.before_start(route.front()), request.start.time_s};
   for (std::size_t i = 0; i < route.leg_count(); ++i) {
     const Leg leg = route.leg(i);

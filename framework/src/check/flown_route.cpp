@@ -148,8 +148,8 @@ class Accelerated {
     for (std::size_t i = 0; i < route.leg_count(); ++i) {
       const Leg leg = route.leg(i);
       const double passes = i > 0 ? passing_speed(route.leg(i - 1), leg, acceleration_) : 0;
-      for (Stretch& stretch : stretches_of(leg, 0, request)) {  // no wind changes its speeds
-        if (leg.turns()) {                                      // not faster than its radius allows
+      for (Stretch& stretch : stretches_of(leg, 0, request)) {
+        if (leg.turns()) {  // not faster than its radius allows
           const double maximum = std::sqrt(acceleration_.mps2 * leg.radius);
           stretch.phase.seconds = std::max(stretch.phase.seconds, stretch.metres / maximum);
         }
@@ -311,7 +311,13 @@ void fly(const Route& route, const Request& request,
          const std::function<void(const FlownPhase&)>& use) {
   const Route legs = without_repeats(route);
   if (!request.vehicle.wing && request.vehicle.acceleration.takes_time()) {
-    Accelerated(legs, request).fly(use);
+    if (request.wind.changes.empty()) {
+      Accelerated(legs, request).fly(use);
+    } else {  // no wind changes its speeds, and a leg that is cut would be begun twice
+      Request steady = request;
+      steady.wind.changes.clear();
+      Accelerated(legs, steady).fly(use);
+    }
     return;
   }
   const bool changes = !request.wind.changes.empty();

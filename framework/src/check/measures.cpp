@@ -2,6 +2,7 @@
 #include "altiplan/measures.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "altiplan/energy.hpp"
 #include "altiplan/flown_route.hpp"
@@ -71,7 +72,8 @@ double leg_duration(const Leg& leg, double time_s, const Request& request) {
     return std::max(leg.air_length() / request.air_speed(),
                     request.vehicle.climb_time(leg.to.z() - leg.from.z()));
   }
-  const double from_s = request.wind.changes.empty() ? 0 : time_s;
+  // No time is known after a leg that is not flown.
+  const double from_s = request.wind.changes.empty() || !std::isfinite(time_s) ? 0 : time_s;
   double end_s = from_s;
   in_uniform_motion(leg, from_s, request, [&](const Vec3&, double, const Vec3&, double until_s) {
     end_s = until_s;
