@@ -2,6 +2,7 @@
 #include "host/run/along_via.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "altiplan/check.hpp"
@@ -213,7 +214,7 @@ PlanResult plan_in_winds(const Request& given, bool anytime, const PlanPart& pla
     }
     if (from.time_s > given.start.time_s) {
       whole.message += ", from " + request.place_text(from.position) +
-                       " on, where the wind changes " + std::to_string(from.time_s) +
+                       " on, where the wind changes " + std::to_string(std::lround(from.time_s)) +
                        " s after the start";
     }
   }
