@@ -111,7 +111,7 @@ class Progress(Terminal):
         return progress_of(self.terminal("run", "search.yaml", columns=columns, code=code))
 
     def test_of_a_search(self):
-        lines = self.search("astar", "{cell_m: [2, 2, 1], max_memory_mb: 100000}")
+        lines = self.search("astar", "{cell_m: [1, 1, 1], max_memory_mb: 100000}")
         self.assertTrue(lines)
         for line in lines:
             self.assertRegex(line, r"^(building the world|route \(astar\): \d+ s, \d s left"
@@ -130,14 +130,14 @@ class Progress(Terminal):
         self.assertRegex(lines[-1], r"; best [\d,.]+; iteration [\d,]+; [\d.,]+( [kMG])? expanded$")
 
     def test_fits_the_terminal(self):
-        lines = self.search("astar", "{cell_m: [2, 2, 1], max_memory_mb: 100000}", columns=30)
+        lines = self.search("astar", "{cell_m: [1, 1, 1], max_memory_mb: 100000}", columns=30)
         self.assertTrue(lines)
         self.assertTrue(all(len(line) <= 30 for line in lines), lines)
         self.assertTrue(lines[-1].endswith("…"))
 
     def test_is_not_in_pipes(self):
         self.write("search.yaml", SEARCH.replace("PLANNER", "astar").replace(
-            "PARAMETERS", "{cell_m: [2, 2, 1], max_memory_mb: 100000}"))
+            "PARAMETERS", "{cell_m: [1, 1, 1], max_memory_mb: 100000}"))
         done = subprocess.run([PROGRAM, "run", "search.yaml"], cwd=self.folder, capture_output=True, text=True,
                               check=False)
         self.assertEqual((done.returncode, done.stderr), (1, ""))
