@@ -106,8 +106,8 @@ void expect_one_wind(const Config& config) {
   const auto refuse = [](const Location& where, const std::string& key, const char* what) {
     throw ConfigError(where, key,
                       std::string(what) +
-                          " knows one wind, and this one changes: give the wind "
-                          "of one hour");
+                          " knows one wind, and this one changes: give that of "
+                          "one hour");
   };
   const ScenarioFile& file = config.scenario;
   if (file.vehicle.body) {
