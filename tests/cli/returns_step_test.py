@@ -131,9 +131,11 @@ class Step(unittest.TestCase):
         for more, what in ((events, "events"), (moving, "moving obstacles")):
             returns = self.expect_same(scenario(COPTER, more=more), parameters=high)
             self.assertEqual((returns["verdict"], what in str(returns["not_judged"])), ("not_judged", True), returns)
-        zones = "  - zones: {%slist: [{cylinder: {at_m: [15000, 17000], radius_m: 300}, from: '2026-05-01T12:00:00Z'}]}\nvolume"
-        for horizon, verdict in (("", "not_judged"), ("horizon_s: 20000, ", "pass")):
-            world = scenario(COPTER, more="start_time: 2026-05-01T10:00:00Z\n").replace("volume", zones % horizon, 1)
+        zones = "  - zones: {%slist: [{cylinder: {at_m: [15000, 17000], radius_m: 300}%s}]}\nvolume"
+        opens = ", from: '2026-05-01T12:00:00Z'"
+        always = "horizon_s: 0, ", ""  # whatever the horizon
+        for given, verdict in ((("", opens), "not_judged"), (("horizon_s: 20000, ", opens), "pass"), (always, "pass")):
+            world = scenario(COPTER, more="start_time: 2026-05-01T10:00:00Z\n").replace("volume", zones % given, 1)
             returns = self.expect_same(world, parameters={"RTL_ALT_M": 320, "WP_SPD": 2})
             self.assertEqual(returns["verdict"], verdict, returns)
 

@@ -418,7 +418,7 @@ JudgedPlan judge(PlanCheck& plan, const std::string& text,
   plan.gate.flight.wind_mps =
       std::max(plan.gate.flight.wind_mps, judged.world.request.wind.max_speed());
   if (scenario) {
-    host::take_changes(scenario->scenario, plan.gate);
+    host::take_changes(*scenario, judged.world, plan.gate);
   }
   host::take_battery(judged.world.request.vehicle, judged.mission, plan.gate);
   judged.report = busy("judging the mission", [&] {

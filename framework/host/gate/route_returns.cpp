@@ -2,9 +2,9 @@
 #include "host/gate/route_returns.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "altiplan/error.hpp"
+#include "altiplan/kit/layers/hours.hpp"
 #include "host/gate/declared_battery.hpp"
 #include "host/gate/returns.hpp"
 #include "host/gate/returns_json.hpp"
@@ -39,17 +39,9 @@ std::string problem_of(const RouteMission& made) {
 }
 }  // namespace
 
-void take_changes(const ScenarioFile& scenario, GateOptions& options) {
-  constexpr double kByDefault = 3600;  // horizon_s of the environment zones
-  options.has_events = !scenario.events.empty();
-  for (const LayerEntry& layer : scenario.environment) {
-    if (scenario.start_time && layer.plugin == "zones") {
-      const Value* given = layer.parameters.find("horizon_s");
-      const double known_s =
-          given != nullptr ? std::strtod(given->text.c_str(), nullptr) : kByDefault;
-      options.zones_known_s = std::min(options.zones_known_s, known_s);
-    }
-  }
+void take_changes(const Config& config, const Mission& mission, GateOptions& options) {
+  options.has_events = !config.scenario.events.empty();
+  options.zones_known_s = kit::known_until_s(mission.truth);
 }
 
 RouteMission mission_of_route(const Mission& mission, const ExportSource& source,
@@ -96,7 +88,7 @@ ReturnsVerdict judge_route_returns(const Config& config, const Mission& mission,
   const formats::MissionFile file =
       formats::read_mission("route.plan", plan_text(made.fewest->plan));
   gate.flight.wind_mps = mission.request.wind.max_speed();
-  take_changes(config.scenario, gate);
+  take_changes(config, mission, gate);
   take_battery(mission.request.vehicle, file, gate);
   PlanReport report = std::move(made.fewest->report);
   report.returns = judge_returns(file, world, gate);

@@ -7,7 +7,7 @@
 namespace altiplan::host {
 
 /// Has the gate know what of a scenario changes the world in flight, which it does not judge.
-void take_changes(const ScenarioFile& scenario, GateOptions& options);
+void take_changes(const Config& config, const Mission& mission, GateOptions& options);
 
 /// A route as a mission that an autopilot flies.
 struct RouteMission {

@@ -162,6 +162,7 @@ class Zones : public Environment, public WhatBlocks {
     double horizon_s = 0;
     std::optional<Frame> frame;
     bool in_time = false;
+    bool has_windows = false;              ///< zones that are active at times alone
     std::vector<kit::Hours::Times> times;  ///< at which a part is closed
     std::vector<std::size_t> keep_out_of;  ///< part of each zone; kAlways: of none
     std::vector<std::size_t> above_ground_of;
@@ -315,6 +316,7 @@ class Zones : public Environment, public WhatBlocks {
     /// False for a zone that is not used; `closed` are the times of one that is closed at times.
     bool is_active(const std::vector<formats::ZonePeriod>& periods, bool keeps_in,
                    kit::Hours::Times& closed) {
+      has_windows = has_windows || !periods.empty();
       if (!in_time || keeps_in || periods.empty()) {
         return is_active(periods);
       }
@@ -421,6 +423,7 @@ class Zones : public Environment, public WhatBlocks {
     void add_published(const formats::Airspace& airspace, const Params& params, Clip* clip) {
       Published published =
           published_zones(airspace, params.published, site, params.horizon_s, in_time, clip);
+      has_windows = has_windows || site.has_start_time;
       notes.insert(notes.end(), published.notes.begin(), published.notes.end());
       inactive += published.inactive;
       two_readings += published.two_readings;
@@ -639,6 +642,7 @@ class ZonesInTime final : public Zones, public kit::Hours {
 
  private:
   explicit ZonesInTime(const std::shared_ptr<Reader>& all) : Zones(at_some_time(*all)) {
+    known_until_s_ = all->has_windows ? all->horizon_s : kInfinity;
     if (all->times.empty()) {
       return;
     }
@@ -683,6 +687,9 @@ class ZonesInTime final : public Zones, public kit::Hours {
     return known;
   }
 
+  double do_known_until_s() const override { return known_until_s_; }
+
+  double known_until_s_ = kInfinity;
   World before_;
   std::shared_ptr<Reader> all_;  ///< null where no zone has times
   std::vector<kit::Hours::Part> parts_;

@@ -13,6 +13,7 @@ const Hours* hours_of(const Layer& layer) {
 }  // namespace
 
 Hours::~Hours() = default;
+double Hours::do_known_until_s() const { return kInfinity; }
 
 bool Hours::meet(const Times& closed, double from, double until) {
   return from <= until && std::any_of(closed.begin(), closed.end(), [&](const auto& times) {
@@ -23,6 +24,16 @@ bool Hours::meet(const Times& closed, double from, double until) {
 bool has_hours(const World& world) {
   return std::any_of(world.layers().begin(), world.layers().end(),
                      [](const Layer& layer) { return hours_of(layer) != nullptr; });
+}
+
+double known_until_s(const World& world) {
+  double until_s = kInfinity;
+  for (const Layer& layer : world.layers()) {
+    if (const auto* hours = dynamic_cast<const Hours*>(layer.environment.get())) {
+      until_s = std::min(until_s, hours->known_until_s());
+    }
+  }
+  return until_s;
 }
 
 World between(const World& world, double from, double until) {

@@ -28,15 +28,22 @@ class ALTIPLAN_API Hours {
     return do_between(from, until);
   }
 
+  /// Seconds after the start until which all that is closed is known; infinite: at any time.
+  double known_until_s() const { return do_known_until_s(); }
+
   static bool meet(const Times& closed, double from, double until);
 
  private:
   virtual const std::vector<Part>& do_parts() const = 0;
   virtual std::shared_ptr<const Environment> do_between(double from, double until) const = 0;
+  /// Default: infinite.
+  virtual double do_known_until_s() const;
 };
 
 /// True if a layer has parts that are closed at times.
 ALTIPLAN_API bool has_hours(const World& world);
+/// Seconds after the start until which what is closed is known of all layers.
+ALTIPLAN_API double known_until_s(const World& world);
 /// The world with each such layer as it is between two times; with infinite ones, closed.
 ALTIPLAN_API World between(const World& world, double from, double until);
 }  // namespace altiplan::kit
