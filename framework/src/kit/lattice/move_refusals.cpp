@@ -42,6 +42,10 @@ std::string MoveRules::sharp_turns() const {
          " m: use larger cells, or hybrid_astar, whose legs curve";
 }
 
+std::string MoveRules::climb_rule() const {
+  return in_wind_ ? "wind or climb_angle" : "climb_angle";
+}
+
 std::string MoveRules::link_refused_by() const {
   if (refused_[by_link] == 0) {
     return "";
@@ -66,7 +70,7 @@ std::string MoveRules::refusals() const {
   const std::string names[rule_count] = {
       "blocked cells",
       "leg_length",
-      "climb_angle",
+      climb_rule(),
       request_.limits.min_turn_radius > 0 ? "turn limits" : "turn_angle",
       "clearance to '" + layer + "'",
       "no ground below",

@@ -223,13 +223,13 @@ DirectionMask MoveRules::directions_kept() {
     leg += !keeps_length;
     kept |= DirectionMask(is_climb_kept && keeps_length) << d;
   }
-  const auto sentence = [&](const char* rule, int count) {
+  const auto sentence = [&](const std::string& rule, int count) {
     return std::string(steps_refused_by_.empty() ? "" : ", ") + rule + " rules out " +
            std::to_string(count) + " of " + std::to_string(__builtin_popcount(lattice_.steps())) +
            " directions";
   };
   if (climb > 0) {
-    steps_refused_by_ += sentence("climb_angle", climb) + lower_cells(climb);
+    steps_refused_by_ += sentence(climb_rule(), climb) + lower_cells(climb);
   }
   if (leg > 0) {
     steps_refused_by_ += sentence("leg_length", leg);

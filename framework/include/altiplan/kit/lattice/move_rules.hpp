@@ -183,6 +183,8 @@ class ALTIPLAN_API MoveRules {
   bool keeps_climb(const Vec3& a, const Vec3& b) const;
   DirectionMask directions_kept();
   /// The constraint that refused the last leg that is no step.
+  /// Of a step: in wind its climb through the air and its course are judged as one.
+  std::string climb_rule() const;
   std::string link_refused_by() const;
   /// The height of cells whose climbing steps the climb limit would keep, if it rules some out.
   std::string lower_cells(int ruled_out) const;
