@@ -1,18 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""wind_hours_test.py PROGRAM SOURCES: winds one after another.
-
-`python3 wind_hours_test.py PROGRAM SOURCES WindHours.test_the_judge` runs one case."""
+"""wind_hours_test.py PROGRAM BROKEN: winds one after another."""
 import json
-import pathlib
 import random
-import subprocess
-import sys
-import tempfile
-import unittest
 
 import wind_flight
+from case import CliCase, main
 
-PROGRAM, SOURCES = sys.argv[1:3]
 SCENARIO = """altiplan: 1
 environment:
   - box: {min_m: [1500, 600, 0], max_m: [1700, 1400, 300]}
@@ -44,41 +37,36 @@ def hours(*winds):
                                        for from_s, speed, degrees in winds)
 
 
-class WindHours(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def altiplan(self, *arguments, code=0):
-        done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600)
-        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
-        return done.stdout + done.stderr
-
+class WindHours(CliCase):
     def files(self, wind, more="", planner="hybrid_astar", steps=""):
-        (self.folder / "s.yaml").write_text(SCENARIO % (wind, more))
-        (self.folder / "p.yaml").write_text(PIPELINE % (planner, steps))
+        self.write("s.yaml", SCENARIO % (wind, more))
+        self.write("p.yaml", PIPELINE % (planner, steps))
 
-    def result(self):
-        self.altiplan("run", "p.yaml", "-o", "r.json")
-        return json.loads((self.folder / "r.json").read_text())["steps"][-1]
+    def change(self, *pairs):
+        """Of the scenario's text: each first one for the second."""
+        text = self.read("s.yaml")
+        for old, new in pairs:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        self.write("s.yaml", text)
+
+    def last_step(self):
+        return self.result("p.yaml")["steps"][-1]
 
     def test_the_judge(self):
         """A straight leg with 5 m/s behind it for a minute, then 5 m/s ahead."""
         self.files(hours((0, 5, 270), (60, 5, 90)), "objective: {time: {}}")
-        scenario = self.folder / "s.yaml"
-        scenario.write_text(scenario.read_text().replace("at_m: [100, 1000, 100]", "at_m: [100, 1900, 100]").replace(
-            "at_m: [5900, 1000, 150]", "at_m: [5900, 1900, 100]"))
-        (self.folder / "r.csv").write_text("x_m,y_m,z_m\n100,1900,100\n5900,1900,100\n")
+        self.change(("at_m: [100, 1000, 100]", "at_m: [100, 1900, 100]"),
+                    ("at_m: [5900, 1000, 150]", "at_m: [5900, 1900, 100]"))
+        self.write("r.csv", "x_m,y_m,z_m\n100,1900,100\n5900,1900,100\n")
 
         def judged(code=0):
-            said = self.altiplan("check", "--route", "r.csv", "--scenario", "s.yaml", "--json", code=code)
-            return json.loads(said[:said.rindex("}") + 1])
+            return json.loads(self.call("check", "--route", "r.csv", "--scenario", "s.yaml", "--json", code=code)[0])
         self.assertAlmostEqual(judged()["cost"], 60 + (5800 - 60 * 25) / 15, 6)
-        scenario.write_text(scenario.read_text().replace("from_deg: 90, speed_mps: 5", "from_deg: 0, speed_mps: 21"))
+        self.change(("from_deg: 90, speed_mps: 5", "from_deg: 0, speed_mps: 21"))
         self.assertIn("does not hold its course in a wind of 21.00 m/s", json.dumps(judged(code=1)))
         # It is over before that wind blows.
-        scenario.write_text(scenario.read_text().replace(at(60), at(240)))
+        self.change((at(60), at(240)))
         self.assertAlmostEqual(judged()["cost"], 5800 / 25, 6)
 
     def test_planners_plan_anew_where_the_wind_changes(self):
@@ -90,7 +78,7 @@ class WindHours(unittest.TestCase):
                 while winds[-1][0] < 200:
                     winds.append((winds[-1][0] + chance.randint(20, 70), chance.uniform(0, 9), chance.uniform(0, 360)))
                 self.files(hours(*winds), planner=planner)
-                step = self.result()
+                step = self.last_step()
                 self.assertTrue(step["accepted"])
                 seconds, off_m = wind_flight.fly(step, 20, winds)
                 self.assertAlmostEqual(seconds, step["metrics"]["duration_s"], delta=1e-3)
@@ -99,9 +87,8 @@ class WindHours(unittest.TestCase):
     def test_the_objective_is_counted_in_the_winds_of_its_time(self):
         winds = (0, 9, 270), (100, 9, 90)
         self.files(hours(*winds), "objective: {time: {}}", planner="astar", steps="    with: {cell_m: [200, 200, 50]}")
-        scenario = self.folder / "s.yaml"
-        scenario.write_text(scenario.read_text().replace(", bank_deg: 30", "").replace(", heading_deg: 90", ""))
-        step = self.result()
+        self.change((", bank_deg: 30", ""), (", heading_deg: 90", ""))
+        step = self.last_step()
         self.assertAlmostEqual(step["cost"], step["metrics"]["duration_s"], delta=1e-6)
         self.assertLessEqual(step["bound"], step["cost"])
         seconds, off_m = wind_flight.fly(step, 20, winds)
@@ -109,24 +96,30 @@ class WindHours(unittest.TestCase):
 
     def test_a_budget_is_enough_for_each_wind(self):
         self.files(hours((0, 5, 200), (100, 5, 200), (150, 5, 200)), planner="rrt_star", steps="    within_iterations: 6000")
-        self.assertTrue(self.result()["accepted"])
+        self.assertTrue(self.last_step()["accepted"])
 
     def test_a_wind_long_after_the_flight_keeps_no_smoother_from_anything(self):
         steps = "  - smooth: shortcut"
         self.files(hours((0, 5, 200)), planner="rrt", steps=steps)
-        alone = self.result()["route"]
+        alone = self.last_step()["route"]
         self.files(hours((0, 5, 200), (3000, 25, 0)), planner="rrt", steps=steps)
-        self.assertEqual(self.result()["route"], alone)
+        self.assertEqual(self.last_step()["route"], alone)
+
+    def test_a_wind_that_lets_none_go_on_is_named(self):
+        self.files(hours((0, 5, 200), (60, 25, 90)), planner="astar", steps="    with: {cell_m: [200, 200, 50]}")
+        self.change((", bank_deg: 30", ""), (", heading_deg: 90", ""))
+        step = self.result("p.yaml", code=1)["steps"][-1]
+        self.assertEqual(step["route"], [])
+        self.assertRegex(step["message"], r"no route: .*wind or climb_angle rules out \d+ of 26 directions.*, from .* on, where the "
+                              r"wind changes 60 s after the start")
 
     def test_refusals(self):
         def refusal(wind, steps="", start="start_time: 2026-05-01T10:00:00Z", goal="[5900, 1000, 150]",
                     radius="radius_m: 2"):
             self.files(wind, steps=steps)
-            scenario = self.folder / "s.yaml"
-            scenario.write_text(scenario.read_text().replace("start_time: 2026-05-01T10:00:00Z", start).replace(
-                "[5900, 1000, 150]", goal).replace("radius_m: 2", radius))
-            said = self.altiplan("run", "p.yaml", code=3)
-            self.assertEqual(self.altiplan("validate", "p.yaml", code=3), said)
+            self.change(("start_time: 2026-05-01T10:00:00Z", start), ("[5900, 1000, 150]", goal), ("radius_m: 2", radius))
+            _, said = self.call("run", "p.yaml", code=3)
+            self.assertEqual(self.call("validate", "p.yaml", code=3)[1], said)
             return said
         two = hours((0, 5, 0), (60, 5, 90))
         self.assertRegex(refusal(two, start=""),
@@ -149,4 +142,4 @@ class WindHours(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]] + sys.argv[3:])
+    main()

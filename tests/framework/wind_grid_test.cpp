@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "altiplan/check.hpp"
-#include "altiplan/energy.hpp"
 #include "altiplan/flown_route.hpp"
 #include "altiplan/measures.hpp"
+#include "support/drag_power.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::wind_grid_test {
@@ -151,16 +151,9 @@ TEST(WindGrid, ALoiterCircleIsFlownInTheStrongestWind) {
   EXPECT_NE(goal_problem(request), "");
 }
 
-/// Grows with the cube of the airspeed.
-struct Drag final : Power {
-  double watts(const SteadyFlight& flight) const override {
-    return 100 + std::pow(flight.airspeed_mps, 3) / 10;
-  }
-};
-
 TEST(WindGrid, EnergyAddsUpAcrossBorders) {
   RandomStream random(2);
-  const Drag power;
+  const testing::DragPower power;
   for (int n = 0; n < 100; ++n) {
     Request request = request_in(random_wind(random, 8));
     request.vehicle.wing.reset();

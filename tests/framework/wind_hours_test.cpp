@@ -7,9 +7,9 @@
 
 #include "altiplan/body.hpp"
 #include "altiplan/check.hpp"
-#include "altiplan/energy.hpp"
 #include "altiplan/flown_route.hpp"
 #include "altiplan/measures.hpp"
+#include "support/drag_power.hpp"
 #include "support/support.hpp"
 
 namespace altiplan::wind_hours_test {
@@ -108,16 +108,9 @@ TEST(WindHours, TimesEqualFlightInSmallSteps) {
   }
 }
 
-/// Grows with the cube of the airspeed.
-struct Drag final : Power {
-  double watts(const SteadyFlight& flight) const override {
-    return 100 + std::pow(flight.airspeed_mps, 3) / 10;
-  }
-};
-
 TEST(WindHours, EnergyEqualsFlightInSmallSteps) {
   RandomStream random(2);
-  const Drag power;
+  const testing::DragPower power;
   for (int n = 0; n < 50; ++n) {
     const Request request = request_in(random_wind(random, 12), false);
     const Vec3 from = random.in(kVolume);

@@ -103,11 +103,9 @@ void expect_one_wind(const Config& config) {
   if (!changes) {
     return;
   }
+  constexpr const char* kOneWind = " knows one wind, and this one changes: give that of one hour";
   const auto refuse = [](const Location& where, const std::string& key, const char* what) {
-    throw ConfigError(where, key,
-                      std::string(what) +
-                          " knows one wind, and this one changes: give that of "
-                          "one hour");
+    throw ConfigError(where, key, std::string(what) + kOneWind);
   };
   const ScenarioFile& file = config.scenario;
   if (file.vehicle.body) {

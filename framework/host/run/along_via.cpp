@@ -26,6 +26,15 @@ void add_counters(Counters& sum, const Counters& more) {
   }
 }
 
+/// Has the result of several sections be that of the last one, but for the route and the proof.
+void take_section(PlanResult& whole, const PlanResult& part) {
+  add_counters(whole.counters, part.counters);
+  whole.budget_hit = whole.budget_hit || part.budget_hit;
+  whole.status = part.status;
+  whole.reason = part.reason;
+  whole.message = part.message;
+}
+
 /// The iterations left of a budget after a call that counted `used`.
 std::uint64_t left_of(std::uint64_t iterations, const Counters& used) {
   if (iterations == Budget{}.max_iterations) {
@@ -139,12 +148,8 @@ PlanResult plan_along(Request request, const std::vector<Goal>& via, bool anytim
     } catch (const PluginError& error) {
       throw PluginError(on_the_way(error.what()), error.reason());
     }
-    add_counters(whole.counters, part.counters);
-    whole.budget_hit = whole.budget_hit || part.budget_hit;
+    take_section(whole, part);
     whole.proved = part.proved;
-    whole.status = part.status;
-    whole.reason = part.reason;
-    whole.message = part.message;
     if (part.status != PlanStatus::solved) {
       // The planner calls the end of each section the goal; an invalid via point is reported as
       // such.
@@ -197,11 +202,7 @@ PlanResult plan_in_winds(const Request& given, bool anytime, const PlanPart& pla
     section.wind = given.wind.in_force(from.time_s);
     section.budget = anytime ? budget_in_one(given.wind, request) : request.budget;
     PlanResult part = plan_part(section);
-    add_counters(whole.counters, part.counters);
-    whole.budget_hit = whole.budget_hit || part.budget_hit;
-    whole.status = part.status;
-    whole.reason = part.reason;
-    whole.message = part.message;
+    take_section(whole, part);
     goes_on = false;
     if (part.status == PlanStatus::solved) {
       Request then = request;
@@ -217,6 +218,9 @@ PlanResult plan_in_winds(const Request& given, bool anytime, const PlanPart& pla
                        " on, where the wind changes " + std::to_string(std::lround(from.time_s)) +
                        " s after the start";
     }
+  }
+  if (whole.status != PlanStatus::solved) {
+    whole.route = {};
   }
   return whole;
 }
